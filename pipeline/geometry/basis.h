@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace kinelux::geometry {
+
+constexpr int max_degree = 6;
+
+/// Polynomials of total degree <= degree in two parameters: (degree + 1)(degree + 2) / 2.
+constexpr std::size_t basis_size(int degree) {
+    return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2);
+}
+
+/// A point of a parameter domain with its share of the area.
+struct DomainPoint {
+    Vec2 parameter;
+    double weight; ///< [m2], > 0
+};
+
+/// Polynomials orthonormal with respect to area on an element's real, trimmed domain; function 0 is 1/sqrt(area), and
+/// function k has no component of the functions before it. Stable on slivers: principal axes of the area, scaled to
+/// the bounding box, Legendre products, orthonormalised twice by modified Gram-Schmidt (a QR of the weighted
+/// Vandermonde matrix).
+class Basis {
+public:
+    Basis() = default;
+    /// @param domain  a quadrature of the domain that is exact for polynomials of degree 2 `degree`
+    /// @param degree  0..max_degree; lowered where the domain does not determine that many functions
+    /// @throws GeometryError  the domain has no area
+    Basis(std::span<const DomainPoint> domain, int degree);
+
+    int degree() const { return degree_; }
+    std::size_t size() const { return basis_size(degree_); }
+    /// All functions at a parameter point. @param values  size() values [1/m]
+    void evaluate(const Vec2& parameter, std::span<double> values) const;
+
+private:
+    void legendre_products(const Vec2& parameter, std::span<double> values) const;
+
+    int degree_ = 0;
+    Vec2 centre_{0.0};
+    Vec2 axis_u_{1.0, 0.0}, axis_v_{0.0, 1.0};
+    Vec2 inverse_half_extent_{1.0};
+    std::vector<double> coefficients_; ///< lower triangular, size() x size(), row k = function k
+};
+
+} // namespace kinelux::geometry

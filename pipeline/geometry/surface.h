@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "core/vec.h"
+#include "model/patch_set.h"
+
+namespace kinelux::geometry {
+
+/// A point of a parametric surface.
+struct SurfaceJet {
+    Vec3 position;      ///< [m]
+    Vec3 normal;        ///< unit, to the front
+    double area_factor; ///< dA / (du dv)
+};
+
+/// Evaluates any surface type at (u,v); see model::Surface for the parametrisations.
+/// @throws GeometryError  a B-spline whose sizes do not fit, or a point where the surface has no normal
+SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv);
+
+/// Parameters of the point of a plane nearest to x. @param surface  a Plane
+Vec2 plane_parameters(const model::Surface& surface, const Vec3& x);
+
+} // namespace kinelux::geometry

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/element_shape.h"
+#include "visibility/occluders.h"
+
+namespace kinelux::kernel {
+
+struct TransportOptions {
+    double tolerance = 1e-3;   ///< of a block, relative to its size [1], 1e-6..0.1
+    int probe_rays = 16;       ///< a pair whose probes all agree is taken as wholly visible or wholly hidden, 4..256
+    bool occlusion = true;     ///< false: nothing stands between any pair
+    visibility::Among occluders = visibility::Among::All; ///< which bodies may stand between
+    std::uint64_t seed = 1;
+};
+
+/// Transport between two elements in world position.
+struct TransportBlock {
+    std::vector<double> values;  ///< size(a) x size(b), row-major; empty = zero [1]
+    double error = 0.0;          ///< estimated Frobenius norm of the error of `values` [1]
+    std::uint32_t rays = 0;      ///< cast for visibility
+};
+
+/// G_ab^kl = integral integral phi_k(x) phi_l(y) cos+ cos'+ V / (pi r^2) dA dA, by Gauss products where the elements are
+/// far from each other, else by an exact inner integral over planar facets inside adaptive quadrature; zero, and not
+/// computed, where the elements face away from each other. Deterministic. @cite equation (7) of Biri et al. 2003, with
+/// bases orthonormal in area (docs/theory.md)
+TransportBlock transport(const geometry::ElementShape& a, const geometry::ElementShape& b,
+                         const visibility::Occluders& occluders, const TransportOptions& options);
+
+/// Whether any point of a can face any point of b at all (normal cones and half spaces).
+bool may_exchange(const geometry::ElementShape& a, const geometry::ElementShape& b);
+
+} // namespace kinelux::kernel

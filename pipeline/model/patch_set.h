@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/vec.h"
+#include "model/mesh.h"
+#include "model/scene.h"
+
+namespace kinelux::model {
+
+enum class SurfaceType : std::uint8_t { Plane, Cylinder, Cone, Sphere, Torus, BSpline };
+
+/// A tensor-product rational B-spline surface.
+struct BSpline {
+    std::uint32_t degree_u = 0, degree_v = 0;
+    std::uint32_t count_u = 0, count_v = 0;  ///< poles along u and v
+    std::vector<double> knots_u, knots_v;    ///< count + degree + 1 each, non-decreasing
+    std::vector<Vec3> poles;                 ///< count_u * count_v, u fastest [m]
+    std::vector<double> weights;             ///< same size, > 0; empty = 1
+};
+
+/// A parametric surface x(u,v) in a right-handed orthonormal frame (axis_u, axis_v, axis_w) at origin:
+///   Plane     origin + u axis_u + v axis_v                                         u, v [m]
+///   Cylinder  origin + radius e(u) + v axis_w                                      u [rad], v [m]
+///   Cone      origin + (radius + v tan(half_angle)) e(u) + v axis_w                u [rad], v [m]
+///   Sphere    origin + radius (cos v e(u) + sin v axis_w)                          u, v [rad]
+///   Torus     origin + (radius + minor_radius cos v) e(u) + minor_radius sin v axis_w
+/// with e(u) = cos u axis_u + sin u axis_v. BSpline uses its own poles. The normal is x_u x x_v, times `orientation`.
+struct Surface {
+    SurfaceType type = SurfaceType::Plane;
+    Vec3 origin{0.0};
+    Vec3 axis_u{1.0, 0.0, 0.0}, axis_v{0.0, 1.0, 0.0}, axis_w{0.0, 0.0, 1.0};
+    double radius = 0.0;         ///< [m]
+    double minor_radius = 0.0;   ///< [m]
+    double half_angle_rad = 0.0;
+    double orientation = 1.0;    ///< +1 or -1
+    BSpline bspline;             ///< only for BSpline
+};
+
+/// A trimmed piece of one surface: what carries radiosity as a smooth function.
+struct Patch {
+    ObjectId object;
+    MaterialId material;
+    Surface surface;
+    std::vector<Vec2> points;                       ///< the domain's vertices (u,v)
+    std::vector<Triangle> triangles;                ///< a triangulation of the domain, counter-clockwise in (u,v)
+    std::vector<std::vector<std::uint32_t>> loops;  ///< closed boundaries: outer counter-clockwise first, holes clockwise
+    double deviation_max = 0.0;                     ///< largest distance of the source vertices from the surface [m]
+    double deviation_rms = 0.0;                     ///< [m]
+};
+
+/// Triangles that no patch holds, of all objects; each belongs to exactly one cluster later.
+struct SmallTriangles {
+    std::vector<Vec3> points;           ///< [m]
+    std::vector<Triangle> triangles;
+    std::vector<ObjectId> objects;      ///< one per triangle
+    std::vector<MaterialId> materials;  ///< one per triangle
+};
+
+/// All geometry that exchanges light. Two-sided faces are in it twice, back to back, each copy one-sided.
+struct PatchSet {
+    std::vector<Patch> patches;
+    SmallTriangles small;
+};
+
+/// @throws GeometryError  ids out of range of the scene, indices out of range, wrong sizes, not finite
+void check(const PatchSet& patches, const Scene& scene);
+
+} // namespace kinelux::model

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/animation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace kinelux::solve {
+
+namespace {
+
+using model::FrameSolution;
+
+double square_sum(std::span<const double> values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return sum;
+}
+
+/// Materials spread over the elements. Where all channels are proportional only the first is solved, and `scale` leads
+/// back to the others.
+struct Light {
+    std::size_t channels = 0;        ///< solved
+    std::vector<double> exitance;    ///< M as coefficients, unknowns x channels [W/m2 or lm/m2]
+    std::vector<double> reflectance; ///< elements x channels [1]
+    std::vector<double> scale;       ///< per channel of the scene; empty: all are solved [1]
+    std::vector<bool> emits;         ///< per element
+};
+
+Light light_of(const Animation& animation) {
+    const auto& materials = animation.scene.materials;
+    Light light;
+    light.channels = animation.plan.single_channel ? 1 : animation.scene.channels.size();
+    std::vector<double> exitance;
+    for (const model::Element& element : animation.elements) {
+        const model::Material& material = materials[element.material.value];
+        exitance.insert(exitance.end(), material.exitance.begin(),
+                        material.exitance.begin() + static_cast<std::ptrdiff_t>(light.channels));
+        light.reflectance.insert(light.reflectance.end(), material.reflectance.begin(),
+                                 material.reflectance.begin() + static_cast<std::ptrdiff_t>(light.channels));
+        light.emits.push_back(material.emits());
+        if (animation.plan.single_channel && light.scale.empty() && material.exitance.front() > 0.0)
+            for (const double value : material.exitance)
+                light.scale.push_back(value / material.exitance.front());
+    }
+    if (animation.plan.single_channel) light.scale.resize(animation.scene.channels.size(), 0.0);
+    light.exitance =
+        constant_coefficients(animation.coefficients.layout, light.channels, animation.areas, exitance);
+    return light;
+}
+
+/// One bounce is left out, so is all that follows it: B = M + rho G M.
+FrameSolution direct_only(const TransportOperator& transport, const Light& light) {
+    const auto& layout = transport.layout();
+    FrameSolution frame;
+    frame.irradiance_direct.resize(light.exitance.size());
+    apply(transport, light.channels, light.exitance, frame.irradiance_direct);
+    frame.irradiance_indirect.assign(light.exitance.size(), 0.0);
+    frame.radiosity = light.exitance;
+    for (std::size_t e = 0; e < layout.elements(); ++e)
+        for (std::size_t u = layout.offsets[e]; u < layout.offsets[e + 1]; ++u)
+            for (std::size_t c = 0; c < light.channels; ++c)
+                frame.radiosity[u * light.channels + c] += light.reflectance[e * light.channels + c] *
+                                                           frame.irradiance_direct[u * light.channels + c];
+    frame.sweeps = 1;
+    return frame;
+}
+
+/// Relative L2 error of radiosity over the elements that do not emit. An error of irradiance is reflected again and
+/// again: at most 1 / (1 - rho) times as much arrives in the end, rho being the mean reflectance.
+double radiosity_error(const model::UnknownLayout& layout, const Light& light, std::span<const double> areas,
+                       const FrameSolution& frame) {
+    double error = 0.0, size = 0.0, reflected = 0.0, area = 0.0;
+    for (std::size_t e = 0; e < layout.elements(); ++e) {
+        const auto rho = std::span(light.reflectance).subspan(e * light.channels, light.channels);
+        const double rho_square = square_sum(rho) / static_cast<double>(light.channels);
+        reflected += std::sqrt(rho_square) * areas[e];
+        area += areas[e];
+        if (light.emits[e]) continue;
+        const double irradiance_error = static_cast<double>(frame.element_error[e]);
+        error += rho_square * irradiance_error * irradiance_error * areas[e];
+        size +=
+            square_sum(std::span(frame.radiosity)
+                           .subspan(layout.offsets[e] * light.channels, layout.count(e) * light.channels)) /
+            static_cast<double>(light.channels);
+    }
+    if (!(size > 0.0)) return 0.0;
+    return std::sqrt(error / size) / (1.0 - reflected / area);
+}
+
+std::vector<double> spread(std::span<const double> values, std::span<const double> scale) {
+    std::vector<double> result;
+    result.reserve(values.size() * scale.size());
+    for (const double value : values)
+        for (const double factor : scale) result.push_back(value * factor);
+    return result;
+}
+
+/// One solved channel becomes all channels of the scene.
+void spread_channels(const Light& light, FrameSolution& frame) {
+    if (light.scale.empty()) return;
+    for (auto* values : {&frame.radiosity, &frame.irradiance_direct, &frame.irradiance_indirect})
+        *values = spread(*values, light.scale);
+    const double rms = std::sqrt(square_sum(light.scale) / static_cast<double>(light.scale.size()));
+    for (float& error : frame.element_error) error = static_cast<float>(rms * static_cast<double>(error));
+}
+
+model::ElementPair pair_of(const model::BlockEntry& entry) { return {entry.i, entry.j}; }
+
+bool by_pair(const model::BlockEntry& a, const model::BlockEntry& b) { return pair_of(a) < pair_of(b); }
+
+bool is_replaced(const motion::FrameBlocks& frame, const model::BlockEntry& entry) {
+    return std::binary_search(frame.pairs.begin(), frame.pairs.end(), pair_of(entry));
+}
+
+/// The entries of all blocks as they are at one time; their offsets mean nothing.
+std::vector<model::BlockEntry> entries_at(const model::BlockSet& static_blocks,
+                                          const motion::FrameBlocks& frame) {
+    std::vector<model::BlockEntry> entries;
+    entries.reserve(static_blocks.entries.size() + frame.blocks.entries.size());
+    for (const model::BlockEntry& entry : static_blocks.entries)
+        if (!is_replaced(frame, entry)) entries.push_back(entry);
+    entries.insert(entries.end(), frame.blocks.entries.begin(), frame.blocks.entries.end());
+    std::sort(entries.begin(), entries.end(), by_pair);
+    return entries;
+}
+
+} // namespace
+
+model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame) {
+    model::BlockSet result;
+    const auto add = [&](const model::BlockSet& from) {
+        for (std::size_t k = 0; k < from.entries.size(); ++k) {
+            model::BlockEntry entry = from.entries[k];
+            if (&from == &static_blocks && is_replaced(frame, entry)) continue;
+            const std::size_t end =
+                k + 1 < from.entries.size() ? from.entries[k + 1].offset : from.values.size();
+            const auto values = std::span(from.values).subspan(entry.offset, end - entry.offset);
+            entry.offset = result.values.size();
+            result.entries.push_back(entry);
+            result.values.insert(result.values.end(), values.begin(), values.end());
+        }
+    };
+    add(static_blocks);
+    add(frame.blocks);
+    std::sort(result.entries.begin(), result.entries.end(), by_pair);
+    return result;
+}
+
+std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
+                                     std::span<const model::BlockEntry> blocks, std::span<const double> areas,
+                                     std::span<const double> exitance, const FrameSolution& frame,
+                                     std::size_t channels) {
+    // ||B_j||^2 per element; the norms of coefficients are those of the functions, the bases being orthonormal.
+    std::vector<double> size(layout.elements()), error(layout.elements());
+    double total_area = 0.0;
+    for (std::size_t e = 0; e < layout.elements(); ++e) {
+        size[e] = square_sum(
+            std::span(frame.radiosity).subspan(layout.offsets[e] * channels, layout.count(e) * channels));
+        total_area += areas[e];
+    }
+    for (const model::BlockEntry& entry : blocks) {
+        const double square = static_cast<double>(entry.error) * static_cast<double>(entry.error);
+        error[entry.i] += square * size[entry.j];
+        if (entry.i != entry.j) error[entry.j] += square * size[entry.i];
+    }
+    // What the solver left is spread evenly: ||r||^2 = (residual ||M||)^2.
+    const double residual = frame.residual * frame.residual * square_sum(exitance) / total_area;
+    std::vector<float> result(layout.elements());
+    for (std::size_t e = 0; e < layout.elements(); ++e)
+        result[e] =
+            static_cast<float>(std::sqrt((error[e] / areas[e] + residual) / static_cast<double>(channels)));
+    return result;
+}
+
+model::Solution solve_animation(const Animation& animation, motion::FrameUpdater& updater,
+                                std::span<const std::uint32_t> frames, const SolveOptions& options,
+                                const std::function<void(const FrameSolution&)>& progress) {
+    const model::Coefficients& coefficients = animation.coefficients;
+    const Light light = light_of(animation);
+    TemporalSolver solver(light.channels, light.exitance, light.reflectance,
+                          {animation.areas.begin(), animation.areas.end()}, options);
+    BlockOperator transport(coefficients.layout, coefficients.static_blocks);
+    model::Solution solution{.layout = coefficients.layout,
+                             .channels = static_cast<std::uint32_t>(animation.scene.channels.size()),
+                             .frames = {}};
+    for (const std::uint32_t number : frames) {
+        const auto started = std::chrono::steady_clock::now();
+        const double time_s = animation.scene.time.time_of_frame(number);
+        const motion::FrameBlocks changed = updater.at(time_s);
+        transport.replace(changed.pairs, changed.blocks);
+
+        FrameSolution frame =
+            animation.plan.bounces == 0 ? direct_only(transport, light) : solver.solve_frame(transport);
+        frame.frame = number;
+        frame.time_s = time_s;
+        frame.blocks_recomputed = static_cast<std::uint32_t>(changed.pairs.size());
+        frame.element_error =
+            irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
+                              animation.areas, light.exitance, frame, light.channels);
+        frame.error_estimate = radiosity_error(coefficients.layout, light, animation.areas, frame);
+        spread_channels(light, frame);
+        frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+        progress(frame);
+        solution.frames.push_back(std::move(frame));
+    }
+    return solution;
+}
+
+} // namespace kinelux::solve

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "model/cluster_tree.h"
+#include "model/coefficients.h"
+#include "model/plan.h"
+#include "model/scene.h"
+#include "model/solution.h"
+#include "motion/frame_blocks.h"
+#include "solve/solve.h"
+
+namespace kinelux::solve {
+
+/// What an animation is solved from; everything must outlive the call.
+struct Animation {
+    const model::Scene& scene;
+    const model::Plan& plan;
+    const model::Coefficients& coefficients;
+    std::span<const model::Element> elements; ///< in order of ElementId
+    std::span<const double> areas;            ///< one per element [m2]
+};
+
+/// Solves the frames one after the other: the blocks of each from the updater, the light from the frames before it.
+/// Scenes in which all channels are proportional are solved once and scaled; a plan without bounces gives the direct
+/// light alone. Each frame carries its error estimate: of irradiance per element from the errors of the blocks and the
+/// residual, of radiosity over all.
+/// @param frames    numbers of the frames to solve, ascending
+/// @param progress  called after each frame; what it throws ends the work
+model::Solution solve_animation(const Animation& animation, motion::FrameUpdater& updater,
+                                std::span<const std::uint32_t> frames, const SolveOptions& options,
+                                const std::function<void(const model::FrameSolution&)>& progress);
+
+/// All blocks as they are at one time: the static ones, with those of `frame` in their place.
+model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame);
+
+/// RMS error of irradiance on each element that the errors of the blocks and the residual of the solution let expect:
+/// sqrt(sum_j (error_ij ||B_j||)^2 / A_i), for errors of blocks that are independent of each other.
+/// @param frame  with radiosity and residual
+/// @return  one per element, the RMS over channels [W/m2 or lx]
+std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
+                                     std::span<const model::BlockEntry> blocks, std::span<const double> areas,
+                                     std::span<const double> exitance, const model::FrameSolution& frame,
+                                     std::size_t channels);
+
+} // namespace kinelux::solve

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <utility>
+
+#include "solve/solve.h"
+
+namespace kinelux::solve {
+
+TemporalSolver::TemporalSolver(std::size_t channels, std::vector<double> exitance, std::vector<double> reflectance,
+                               std::vector<double> areas, const SolveOptions& options)
+    : channels_(channels), exitance_(std::move(exitance)), reflectance_(std::move(reflectance)),
+      areas_(std::move(areas)), options_(options) {}
+
+// The polynomial through the last frames, continued by one: b1, 2 b1 - b2, 3 b1 - 3 b2 + b3.
+std::vector<double> TemporalSolver::extrapolated() const {
+    static constexpr std::array<std::array<double, 3>, 4> weights{{{0, 0, 0}, {1, 0, 0}, {2, -1, 0}, {3, -3, 1}}};
+    if (previous_.empty())
+        return {};
+    const auto& w = weights[previous_.size()];
+    std::vector<double> start(previous_.front().size(), 0.0);
+    for (std::size_t p = 0; p < previous_.size(); ++p)
+        for (std::size_t k = 0; k < start.size(); ++k)
+            start[k] += w[p] * previous_[p][k];
+    return start;
+}
+
+model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transport) {
+    const System system{transport, channels_, exitance_, reflectance_, areas_};
+    SystemSolution solved = solve_system(system, options_, extrapolated());
+
+    model::FrameSolution frame;
+    frame.sweeps = solved.sweeps;
+    frame.residual = solved.residual;
+    frame.unshot = solved.unshot;
+    frame.converged = solved.converged;
+    frame.irradiance_direct.resize(exitance_.size());
+    apply(transport, channels_, exitance_, frame.irradiance_direct);
+    frame.irradiance_indirect.resize(exitance_.size());
+    apply(transport, channels_, solved.radiosity, frame.irradiance_indirect);
+    for (std::size_t k = 0; k < exitance_.size(); ++k)
+        frame.irradiance_indirect[k] -= frame.irradiance_direct[k];
+    frame.radiosity = solved.radiosity;
+
+    previous_.insert(previous_.begin(), std::move(solved.radiosity));
+    if (previous_.size() > 3)
+        previous_.pop_back();
+    return frame;
+}
+
+} // namespace kinelux::solve
