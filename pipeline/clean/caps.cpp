@@ -18,7 +18,7 @@ namespace {
 constexpr int most_rounds = 16;
 
 double height(std::span<const Vec3> points, const model::Triangle& t) {
-    const Vec3 a = points[t[0]], b = points[t[1]], c = points[t[2]];
+    const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
     const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     return longest > 0.0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0.0;
 }

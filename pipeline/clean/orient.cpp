@@ -37,6 +37,7 @@ OrientedSoup orient_soup(const std::vector<Vec3>& points, const std::vector<mode
     std::vector<Point> soup_points;
     std::vector<std::vector<std::size_t>> soup_faces;
     OrientedSoup soup;
+    soup_faces.reserve(triangles.size());
     for (const Vec3& x : points) {
         soup.origin.push_back(static_cast<std::uint32_t>(soup_points.size()));
         soup_points.emplace_back(x.x, x.y, x.z);

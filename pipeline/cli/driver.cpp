@@ -59,29 +59,7 @@ double number_in(const fs::path& record, std::string_view key) {
 RunTable::RunTable(const std::string& program, const std::string& summary, const std::string& argument_help)
     : options_(program, summary) {
     options_.add({.member = &argument_, .flags = "SCENE", .help = argument_help});
-    options_.add({.member = &output_,
-                  .flags = "-o,--output",
-                  .help = "folder of the case",
-                  .unset = "<scene stem>.case in the current folder"});
-    options_.add({.member = &accuracy_,
-                  .flags = "--accuracy",
-                  .help = "relative error of radiosity asked for, as 1% or 0.01",
-                  .low = 1e-6,
-                  .high = 0.5,
-                  .unset = "what the scene says, else 3%"});
-    options_.add({.member = &degree_,
-                  .flags = "--degree",
-                  .help = "of the polynomial bases",
-                  .low = 0,
-                  .high = 3,
-                  .unset = "from the accuracy"});
-    options_.add({.member = &element_size_,
-                  .flags = "--element-size",
-                  .help = "largest edge of an element",
-                  .unit = "m",
-                  .low = 1e-9,
-                  .high = 1e9,
-                  .unset = "from the accuracy"});
+    overrides_.emplace(options_);
     options_.add({.member = &frames_,
                   .flags = "--frames",
                   .help = "first and last frame that are solved and exported",
@@ -91,17 +69,14 @@ RunTable::RunTable(const std::string& program, const std::string& summary, const
                   .flags = "--memory-limit",
                   .help = "refuse work that would need more",
                   .unit = "MiB",
-                  .low = 1,
+                  .low = 1e-3,
                   .high = 1e9,
                   .unset = "4/5 of the machine's"});
-    options_.add({.member = &allow_outside_,
-                  .flags = "--allow-outside",
-                  .help = "meshes may lie outside the scene file's folder tree"});
     options_.add({.member = &force_, .flags = "--force", .help = "run every stage, up to date or not"});
     add_common_options(options_, threads_, quiet_, verbose_, log_file_);
 }
 
-fs::path RunTable::case_path() const { return output_.empty() ? default_case(argument_) : output_; }
+fs::path RunTable::case_path() const { return overrides_->case_path(argument_); }
 
 void RunTable::apply() const { apply_common_options(threads_, quiet_, verbose_, log_file_); }
 

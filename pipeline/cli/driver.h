@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/option_table.h"
+#include "cli/scene_overrides.h"
 
 namespace kinelux::cli {
 
@@ -20,6 +21,7 @@ public:
 
     OptionTable& options() { return options_; }
     const std::filesystem::path& argument() const { return argument_; }
+    std::uint64_t seed() const { return seed_; }
     std::filesystem::path case_path() const; ///< --output, or <scene stem>.case
     void apply() const;                      ///< log and threads
 
@@ -34,14 +36,13 @@ public:
 private:
     std::vector<std::string> stage_arguments(const std::string& stage) const;
 
-    std::filesystem::path argument_, output_, log_file_;
-    std::optional<Share> accuracy_;
-    std::optional<int> degree_;
-    std::optional<double> element_size_, memory_limit_;
+    std::filesystem::path argument_, log_file_;
+    OptionTable options_;
+    std::optional<SceneOverrides> overrides_; // after the argument, so that it comes second in the table
+    std::optional<double> memory_limit_;
     std::optional<FrameRange> frames_;
     std::uint64_t threads_ = 0, seed_ = 1;
-    bool allow_outside_ = false, force_ = false, quiet_ = false, verbose_ = false;
-    OptionTable options_;
+    bool force_ = false, quiet_ = false, verbose_ = false;
 };
 
 /// One word behind `kinelux`.

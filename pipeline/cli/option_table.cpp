@@ -48,11 +48,15 @@ FrameRange frames_from(std::string_view text) {
     return {first, last};
 }
 
+/// " m"; nothing for plain numbers.
+std::string shown_unit(const OptionRow& row) {
+    return row.unit.empty() || row.unit == "1" ? "" : " " + row.unit;
+}
+
 void check_range(const OptionRow& row, double value) {
     if (value < row.low || value > row.high)
-        throw core::OptionError(fmt::format("{} is outside {}..{}{}{}", short_number(value),
-                                            short_number(row.low), short_number(row.high),
-                                            row.unit.empty() ? "" : " ", row.unit));
+        throw core::OptionError(fmt::format("{} is outside {}..{}{}", short_number(value),
+                                            short_number(row.low), short_number(row.high), shown_unit(row)));
 }
 
 struct Assign {
@@ -257,7 +261,7 @@ std::string OptionTable::help() const {
         const OptionRow& row = entry.row;
         const std::string range = range_text(row);
         std::string help = row.help;
-        if (!range.empty()) help += fmt::format(" [{}{}]", range, row.unit.empty() ? "" : " " + row.unit);
+        if (!range.empty()) help += fmt::format(" [{}{}]", range, shown_unit(row));
         if (!entry.positional && !is_switch(row) && !entry.default_text.empty())
             help += fmt::format(" (default: {})", entry.default_text);
         std::string flags = row.flags;
@@ -287,10 +291,9 @@ std::string OptionTable::effective() const {
     std::string text;
     for (const Entry& entry : entries_) {
         if (entry.positional || entry.row.decides == Decides::Manners) continue;
-        const std::string& unit = entry.row.unit;
-        text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", entry.name,
-                            std::visit(Print{entry.row}, entry.row.member),
-                            unit.empty() || unit == "1" ? "" : " " + unit);
+        const std::string value = std::visit(Print{entry.row}, entry.row.member);
+        text += fmt::format("{}{} = {}{}", text.empty() ? "" : ", ", entry.name, value,
+                            value == entry.row.unset ? "" : shown_unit(entry.row));
     }
     return text;
 }

@@ -25,7 +25,8 @@ namespace {
 
 template <class Value>
 std::string bytes_hash(const std::vector<Value>& values) {
-    static_assert(std::is_trivially_copyable_v<Value>);
+    static_assert(
+        std::is_standard_layout_v<Value>); // numbers without padding: GLM vectors, ids, index arrays
     const auto bytes = std::as_bytes(std::span(values));
     return core::content_hash({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
@@ -189,8 +190,6 @@ void apply_common_options(std::uint64_t threads, bool quiet, bool verbose, const
                         log_file);
     core::set_thread_count(threads);
 }
-
-fs::path default_case(const fs::path& scene) { return scene.stem().string() + ".case"; }
 
 std::string scene_fingerprint(const model::Scene& scene) {
     std::vector<io::MeshFile> meshes;

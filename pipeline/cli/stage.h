@@ -96,9 +96,6 @@ void add_common_options(OptionTable& table, std::uint64_t& threads, bool& quiet,
 void apply_common_options(std::uint64_t threads, bool quiet, bool verbose,
                           const std::filesystem::path& log_file);
 
-/// "<scene stem>.case" in the current folder.
-std::filesystem::path default_case(const std::filesystem::path& scene);
-
 /// A hash of everything a scene says, meshes included: equal for equal content, wherever it was read from.
 std::string scene_fingerprint(const model::Scene& scene);
 

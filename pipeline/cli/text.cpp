@@ -54,6 +54,13 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+}
+
 std::string TextTable::text() const {
     const std::size_t columns = rows_.front().size();
     std::vector<std::size_t> widths(columns, 0);

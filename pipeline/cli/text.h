@@ -17,6 +17,9 @@ std::string nearest_word(std::string_view word, std::span<const std::string> kno
 /// Several lines as one: line breaks become blanks, so that an error stays one line.
 std::string one_line(std::string_view text);
 
+/// A field of a CSV file: in quotes when it holds a comma, a quote or a line break.
+std::string csv_field(const std::string& text);
+
 /// Columns of text for the terminal, each as wide as its longest entry; the last one is not padded.
 class TextTable {
 public:

@@ -97,6 +97,7 @@ std::optional<std::size_t> longest_neighbour(const std::map<std::size_t, double>
 // none is left that has a neighbour.
 std::vector<Piece> join_slivers(std::vector<Piece> pieces, double smallest) {
     std::vector<double> areas;
+    areas.reserve(pieces.size());
     for (const Piece& piece : pieces) areas.push_back(area(piece));
     std::vector<std::map<std::size_t, double>> shared = shared_lengths(pieces);
     while (true) {

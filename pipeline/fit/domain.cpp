@@ -93,6 +93,7 @@ void align(const std::vector<Vec3>& corners, const std::vector<Edge>& boundary, 
         surface.axis_v = glm::normalize(glm::cross(surface.axis_w, surface.axis_u));
     }
     std::vector<Vec2> points;
+    points.reserve(corners.size());
     for (const Vec3& x : corners) points.push_back(project(x));
     Bounds bounds = bounds_of(points);
     const Vec2 size = bounds.high - bounds.low;
@@ -133,6 +134,7 @@ FlatChart flatten(const Body& body, const Chart& chart) {
         return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), point) - used.begin());
     };
     std::vector<Vec3> corners;
+    corners.reserve(used.size());
     for (const std::uint32_t point : used) corners.push_back(body.points[point]);
     for (const std::uint32_t f : chart.faces) {
         const model::Triangle& t = body.faces[f].corners;

@@ -29,7 +29,7 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3>& points, std::vector<Vec
 Face make_face(const std::vector<Vec3>& points, const model::Triangle& corners) {
     Face face;
     face.corners = corners;
-    const Vec3 a = points[corners[0]], b = points[corners[1]], c = points[corners[2]];
+    const Vec3 &a = points[corners[0]], &b = points[corners[1]], &c = points[corners[2]];
     const Vec3 across = glm::cross(b - a, c - a);
     const double twice_area = glm::length(across);
     const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});

@@ -35,7 +35,7 @@ double longest_edge(const std::vector<Vec2>& points, const model::Triangle& t) {
 int winding(std::span<const Vec2> points, std::span<const Edge> edges, const Vec2& p) {
     int turns = 0;
     for (const Edge& edge : edges) {
-        const Vec2 a = points[edge[0]], b = points[edge[1]];
+        const Vec2 &a = points[edge[0]], &b = points[edge[1]];
         if ((a.y <= p.y) == (b.y <= p.y)) continue;
         const double left = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
         if (a.y <= p.y && left > 0.0) ++turns;

@@ -62,7 +62,7 @@ std::pair<Polygon, Polygon> split(const LineFamily& cut, const Polygon& polygon,
     if (!below) return {{}, polygon};
     std::pair<Polygon, Polygon> parts;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        const Vec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
         const int side_a = side(cut, a, line), side_b = side(cut, b, line);
         if (side_a <= 0) parts.first.push_back(a);
         if (side_a >= 0) parts.second.push_back(a);

@@ -128,18 +128,12 @@ Derivatives spline(const model::BSpline& s, const Vec2& uv) {
 
 Derivatives derivatives(const model::Surface& s, const Vec2& uv) {
     switch (s.type) {
-    case model::SurfaceType::Plane:
-        return plane(s, uv);
-    case model::SurfaceType::Cylinder:
-        return lathed_line(s, uv, 0.0);
-    case model::SurfaceType::Cone:
-        return lathed_line(s, uv, std::tan(s.half_angle_rad));
-    case model::SurfaceType::Sphere:
-        return lathed_circle(s, uv, 0.0, s.radius);
-    case model::SurfaceType::Torus:
-        return lathed_circle(s, uv, s.radius, s.minor_radius);
-    case model::SurfaceType::BSpline:
-        return spline(s.bspline, uv);
+    case model::SurfaceType::Plane: return plane(s, uv);
+    case model::SurfaceType::Cylinder: return lathed_line(s, uv, 0.0);
+    case model::SurfaceType::Cone: return lathed_line(s, uv, std::tan(s.half_angle_rad));
+    case model::SurfaceType::Sphere: return lathed_circle(s, uv, 0.0, s.radius);
+    case model::SurfaceType::Torus: return lathed_circle(s, uv, s.radius, s.minor_radius);
+    case model::SurfaceType::BSpline: return spline(s.bspline, uv);
     }
     throw core::GeometryError("a surface of unknown type");
 }

@@ -37,7 +37,8 @@ constexpr FileKind scene_kind{"scene.json", "kinelux-scene", "kinelux-clean", nu
 constexpr FileKind patches_kind{"patches.h5", "kinelux-patches", "kinelux-fit", &scene_kind};
 constexpr FileKind clusters_kind{"clusters.h5", "kinelux-clusters", "kinelux-cluster", &patches_kind};
 constexpr FileKind plan_kind{"plan.json", "kinelux-plan", "kinelux-plan", &clusters_kind};
-constexpr FileKind coefficients_kind{"coefficients.h5", "kinelux-coefficients", "kinelux-coefficients", &plan_kind};
+constexpr FileKind coefficients_kind{"coefficients.h5", "kinelux-coefficients", "kinelux-coefficients",
+                                     &plan_kind};
 constexpr FileKind solution_kind{"solution.h5", "kinelux-solution", "kinelux-solve", &coefficients_kind};
 
 std::string what_to_do(const FileKind& kind, const fs::path& folder) {
@@ -46,7 +47,8 @@ std::string what_to_do(const FileKind& kind, const fs::path& folder) {
 }
 
 core::FileError bad_file(const FileKind& kind, const fs::path& folder, const std::string& what) {
-    return core::FileError(fmt::format("{}: {}; {}", (folder / kind.name).string(), what, what_to_do(kind, folder)));
+    return core::FileError(
+        fmt::format("{}: {}; {}", (folder / kind.name).string(), what, what_to_do(kind, folder)));
 }
 
 /// Runs a reader; whatever goes wrong names the file and what to do.
@@ -84,10 +86,12 @@ void check_header(const FileHeader& header, const FileKind& kind) {
     if (header.format != kind.format)
         throw core::FileError(fmt::format("its format is '{}', not '{}'", header.format, kind.format));
     if (header.version > format_version)
-        throw core::FileError(fmt::format("it has format version {} of Kinelux {}, this is {}, which reads up to {}: "
-                                          "use the newer program, or",
-                                          header.version, header.program, core::version(), format_version));
-    if (header.version < 1) throw core::FileError(fmt::format("there is no format version {}", header.version));
+        throw core::FileError(
+            fmt::format("it has format version {} of Kinelux {}, this is {}, which reads up to {}: "
+                        "use the newer program, or",
+                        header.version, header.program, core::version(), format_version));
+    if (header.version < 1)
+        throw core::FileError(fmt::format("there is no format version {}", header.version));
 }
 
 /// A file is usable when it and all that it was made from are what they were: an export must not mix an old solution
@@ -95,20 +99,24 @@ void check_header(const FileHeader& header, const FileKind& kind) {
 void check_origin(const FileKind& kind, const fs::path& folder) {
     if (kind.predecessor != nullptr) check_origin(*kind.predecessor, folder);
     if (!fs::is_regular_file(folder / kind.name)) {
-        const std::string stage = kind.predecessor == nullptr ? fmt::format("{} on the scene", kind.stage)
-                                                              : fmt::format("{} {}", kind.stage, folder.string());
+        const std::string stage = kind.predecessor == nullptr
+                                      ? fmt::format("{} on the scene", kind.stage)
+                                      : fmt::format("{} {}", kind.stage, folder.string());
         throw core::FileError(fmt::format("{}: missing; run {} first", (folder / kind.name).string(), stage));
     }
     guarded(kind, folder, [&] {
         const FileHeader header = read_header(kind, folder);
         check_header(header, kind);
-        if (kind.predecessor != nullptr && header.made_from != core::file_hash(folder / kind.predecessor->name))
-            throw core::FileError(fmt::format("made from another {} than lies beside it", kind.predecessor->name));
+        if (kind.predecessor != nullptr &&
+            header.made_from != core::file_hash(folder / kind.predecessor->name))
+            throw core::FileError(
+                fmt::format("made from another {} than lies beside it", kind.predecessor->name));
     });
 }
 
 FileHeader new_header(const FileKind& kind, const fs::path& folder) {
-    FileHeader header{.format = kind.format, .version = format_version, .program = std::string(core::version())};
+    FileHeader header{
+        .format = kind.format, .version = format_version, .program = std::string(core::version())};
     if (kind.predecessor != nullptr) header.made_from = core::file_hash(folder / kind.predecessor->name);
     return header;
 }
@@ -151,12 +159,14 @@ void check_layout(const model::UnknownLayout& layout) {
 CaseFolder::CaseFolder(fs::path folder, bool create) : folder_(std::move(folder)) {
     std::error_code failed;
     if (fs::exists(folder_) && !fs::is_directory(folder_))
-        throw core::FileError(fmt::format("{}: is not a folder; name the folder of a case", folder_.string()));
+        throw core::FileError(
+            fmt::format("{}: is not a folder; name the folder of a case", folder_.string()));
     if (create) fs::create_directories(folder_, failed);
-    if (failed) throw core::FileError(fmt::format("{}: cannot be made: {}", folder_.string(), failed.message()));
+    if (failed)
+        throw core::FileError(fmt::format("{}: cannot be made: {}", folder_.string(), failed.message()));
     if (!create && !fs::exists(folder_))
-        throw core::FileError(fmt::format("{}: there is no such case; run kinelux-clean on the scene first",
-                                          folder_.string()));
+        throw core::FileError(
+            fmt::format("{}: there is no such case; run kinelux-clean on the scene first", folder_.string()));
 }
 
 model::Scene CaseFolder::read_scene() const {
@@ -165,7 +175,8 @@ model::Scene CaseFolder::read_scene() const {
         for (std::size_t o = 0; o < file.meshes.size(); ++o) {
             const MeshFile& mesh = file.meshes[o];
             if (core::file_hash(folder_ / mesh.path) != mesh.hash)
-                throw core::FileError(fmt::format("'{}' is not the mesh that was written with it", mesh.path));
+                throw core::FileError(
+                    fmt::format("'{}' is not the mesh that was written with it", mesh.path));
             file.scene.objects[o].mesh = read_clean_mesh(folder_ / mesh.path);
         }
         model::check(file.scene);

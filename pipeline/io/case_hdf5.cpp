@@ -39,8 +39,8 @@ void put_lists(Hdf5Writer& file, const std::string& name, const Items& items, Fi
 
 /// What put_lists wrote, given the values that were end to end.
 template <class Value>
-std::vector<std::vector<Value>> split_lists(const Hdf5Reader& file, const std::string& name, std::size_t lists,
-                                            const std::vector<Value>& joined) {
+std::vector<std::vector<Value>> split_lists(const Hdf5Reader& file, const std::string& name,
+                                            std::size_t lists, const std::vector<Value>& joined) {
     const auto offsets = file.dataset<std::uint64_t>(name + "_offsets", {lists + 1});
     if (offsets.empty() || offsets.front() != 0 || offsets.back() != joined.size())
         throw core::FileError(fmt::format("dataset '{}_offsets' does not fit '{}'", name, name));
@@ -55,7 +55,8 @@ std::vector<std::vector<Value>> split_lists(const Hdf5Reader& file, const std::s
 }
 
 template <class Value>
-std::vector<std::vector<Value>> get_lists(const Hdf5Reader& file, const std::string& name, std::size_t lists) {
+std::vector<std::vector<Value>> get_lists(const Hdf5Reader& file, const std::string& name,
+                                          std::size_t lists) {
     return split_lists(file, name, lists, file.dataset<Value>(name));
 }
 
@@ -95,10 +96,14 @@ void put_surfaces(Hdf5Writer& file, const std::vector<Patch>& patches) {
                  column<std::uint8_t>(patches, [](const Patch& p) { return p.surface.type; }));
     file.dataset("patches/surface", std::span<const double>(numbers), {count, surface_numbers});
     file.dataset("bsplines/shape", std::span<const std::uint32_t>(shape), {count, 4});
-    put_lists(file, "bsplines/knots_u", patches, [](const Patch& p) -> auto& { return p.surface.bspline.knots_u; });
-    put_lists(file, "bsplines/knots_v", patches, [](const Patch& p) -> auto& { return p.surface.bspline.knots_v; });
-    put_lists(file, "bsplines/poles", patches, [](const Patch& p) -> auto& { return p.surface.bspline.poles; });
-    put_lists(file, "bsplines/weights", patches, [](const Patch& p) -> auto& { return p.surface.bspline.weights; });
+    put_lists(
+        file, "bsplines/knots_u", patches, [](const Patch& p) -> auto& { return p.surface.bspline.knots_u; });
+    put_lists(
+        file, "bsplines/knots_v", patches, [](const Patch& p) -> auto& { return p.surface.bspline.knots_v; });
+    put_lists(
+        file, "bsplines/poles", patches, [](const Patch& p) -> auto& { return p.surface.bspline.poles; });
+    put_lists(
+        file, "bsplines/weights", patches, [](const Patch& p) -> auto& { return p.surface.bspline.weights; });
 }
 
 void get_surfaces(const Hdf5Reader& file, std::vector<Patch>& patches) {
@@ -136,7 +141,8 @@ void put_loops(Hdf5Writer& file, const std::vector<Patch>& patches) {
         offsets.push_back(loops.size());
     }
     file.dataset("patches/loops_offsets", offsets);
-    put_lists(file, "patches/loop_vertices", loops, [](const auto& loop) -> auto& { return loop; });
+    put_lists(
+        file, "patches/loop_vertices", loops, [](const auto& loop) -> auto& { return loop; });
 }
 
 void get_loops(const Hdf5Reader& file, std::vector<Patch>& patches) {
@@ -152,13 +158,15 @@ model::SmallTriangles get_small(const Hdf5Reader& file) {
     small.triangles = file.triangles("small/triangles");
     const std::size_t count = small.triangles.size();
     for (const auto id : file.dataset<std::uint32_t>("small/object", {count})) small.objects.emplace_back(id);
-    for (const auto id : file.dataset<std::uint32_t>("small/material", {count})) small.materials.emplace_back(id);
+    for (const auto id : file.dataset<std::uint32_t>("small/material", {count}))
+        small.materials.emplace_back(id);
     return small;
 }
 
 // ---- clusters
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max(); ///< an element that is of no patch or cluster
+constexpr std::uint32_t none =
+    std::numeric_limits<std::uint32_t>::max(); ///< an element that is of no patch or cluster
 
 template <class Tag>
 std::optional<Id<Tag>> optional_id(std::uint32_t value) {
@@ -173,7 +181,8 @@ void put_elements(Hdf5Writer& file, const std::vector<model::Element>& elements)
     file.dataset("elements/cluster", column<std::uint32_t>(elements, [](const Element& e) {
                      return e.cluster ? e.cluster->value : none;
                  }));
-    file.dataset("elements/object", column<std::uint32_t>(elements, [](const Element& e) { return e.object.value; }));
+    file.dataset("elements/object",
+                 column<std::uint32_t>(elements, [](const Element& e) { return e.object.value; }));
     file.dataset("elements/material",
                  column<std::uint32_t>(elements, [](const Element& e) { return e.material.value; }));
     file.dataset("elements/first_triangle",
@@ -256,8 +265,10 @@ void get_frames(const Hdf5Reader& file, const std::string& name, model::Solution
 
 /// A dataset [frames] of one number a frame.
 template <class Stored, class Field>
-void put_number(Hdf5Writer& file, const std::string& name, const model::Solution& solution, Field FrameSolution::*field) {
-    file.dataset(name, column<Stored>(solution.frames, [&](const FrameSolution& frame) { return frame.*field; }));
+void put_number(Hdf5Writer& file, const std::string& name, const model::Solution& solution,
+                Field FrameSolution::*field) {
+    file.dataset(name,
+                 column<Stored>(solution.frames, [&](const FrameSolution& frame) { return frame.*field; }));
 }
 
 template <class Stored, class Field>
@@ -271,19 +282,27 @@ void get_number(const Hdf5Reader& file, const std::string& name, model::Solution
 
 void put_patches(Hdf5Writer& file, const model::PatchSet& set) {
     const auto& patches = set.patches;
-    file.dataset("patches/object", column<std::uint32_t>(patches, [](const Patch& p) { return p.object.value; }));
-    file.dataset("patches/material", column<std::uint32_t>(patches, [](const Patch& p) { return p.material.value; }));
-    file.dataset("patches/deviation_max", column<double>(patches, [](const Patch& p) { return p.deviation_max; }));
-    file.dataset("patches/deviation_rms", column<double>(patches, [](const Patch& p) { return p.deviation_rms; }));
+    file.dataset("patches/object",
+                 column<std::uint32_t>(patches, [](const Patch& p) { return p.object.value; }));
+    file.dataset("patches/material",
+                 column<std::uint32_t>(patches, [](const Patch& p) { return p.material.value; }));
+    file.dataset("patches/deviation_max",
+                 column<double>(patches, [](const Patch& p) { return p.deviation_max; }));
+    file.dataset("patches/deviation_rms",
+                 column<double>(patches, [](const Patch& p) { return p.deviation_rms; }));
     put_surfaces(file, patches);
-    put_lists(file, "patches/points", patches, [](const Patch& p) -> auto& { return p.points; });
-    put_lists(file, "patches/triangles", patches, [](const Patch& p) -> auto& { return p.triangles; });
+    put_lists(
+        file, "patches/points", patches, [](const Patch& p) -> auto& { return p.points; });
+    put_lists(
+        file, "patches/triangles", patches, [](const Patch& p) -> auto& { return p.triangles; });
     put_loops(file, patches);
 
     file.dataset("small/points", set.small.points);
     file.dataset("small/triangles", set.small.triangles);
-    file.dataset("small/object", column<std::uint32_t>(set.small.objects, [](ObjectId id) { return id.value; }));
-    file.dataset("small/material", column<std::uint32_t>(set.small.materials, [](MaterialId id) { return id.value; }));
+    file.dataset("small/object",
+                 column<std::uint32_t>(set.small.objects, [](ObjectId id) { return id.value; }));
+    file.dataset("small/material",
+                 column<std::uint32_t>(set.small.materials, [](MaterialId id) { return id.value; }));
 }
 
 model::PatchSet get_patches(const Hdf5Reader& file) {
@@ -315,15 +334,18 @@ void put_clusters(Hdf5Writer& file, const model::ClusterTree& tree) {
     using model::Cluster;
     file.attribute("element_size_m", tree.element_size);
     const auto& clusters = tree.clusters;
-    file.dataset("clusters/object", column<std::uint32_t>(clusters, [](const Cluster& c) { return c.object.value; }));
+    file.dataset("clusters/object",
+                 column<std::uint32_t>(clusters, [](const Cluster& c) { return c.object.value; }));
     file.dataset("clusters/material",
                  column<std::uint32_t>(clusters, [](const Cluster& c) { return c.material.value; }));
     file.dataset("clusters/normal_spread_deg",
                  column<double>(clusters, [](const Cluster& c) { return c.normal_spread_deg; }));
-    put_lists(file, "clusters/triangles", clusters, [](const Cluster& c) -> auto& { return c.triangles; });
+    put_lists(
+        file, "clusters/triangles", clusters, [](const Cluster& c) -> auto& { return c.triangles; });
     put_elements(file, tree.elements);
     static_assert(sizeof(model::DomainTriangle) == 6 * sizeof(double));
-    const double* corners = tree.domain_triangles.empty() ? nullptr : &tree.domain_triangles.front().front().x;
+    const double* corners =
+        tree.domain_triangles.empty() ? nullptr : &tree.domain_triangles.front().front().x;
     file.dataset("domain_triangles", std::span(corners, 6 * tree.domain_triangles.size()),
                  {tree.domain_triangles.size(), 3, 2});
 }
@@ -359,7 +381,8 @@ void put_coefficients(Hdf5Writer& file, const model::Coefficients& coefficients)
     const auto& [entries, values] = coefficients.static_blocks;
     file.dataset("static_blocks/i", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.i; }));
     file.dataset("static_blocks/j", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.j; }));
-    file.dataset("static_blocks/offset", column<std::uint64_t>(entries, [](const BlockEntry& b) { return b.offset; }));
+    file.dataset("static_blocks/offset",
+                 column<std::uint64_t>(entries, [](const BlockEntry& b) { return b.offset; }));
     file.dataset("static_blocks/error", column<float>(entries, [](const BlockEntry& b) { return b.error; }));
     file.dataset("static_blocks/values", values);
     put_pairs(file, "moving_pairs", coefficients.moving_pairs);

@@ -97,7 +97,8 @@ std::string multi_block_xml(const model::Scene& scene, const std::vector<MeshFil
 void remove_other_meshes(const fs::path& folder, const std::vector<MeshFile>& meshes) {
     for (const auto& entry : fs::directory_iterator(folder / "clean")) {
         const std::string path = "clean/" + entry.path().filename().string();
-        const bool ours = std::any_of(meshes.begin(), meshes.end(), [&](const auto& mesh) { return mesh.path == path; });
+        const bool ours =
+            std::any_of(meshes.begin(), meshes.end(), [&](const auto& mesh) { return mesh.path == path; });
         if (!ours && entry.path().extension() == ".vtp") fs::remove(entry.path());
     }
 }
@@ -141,21 +142,23 @@ void add_small(Collected& view, const model::SmallTriangles& small) {
 
 constexpr model::Triangle one_triangle{0, 1, 2};
 
-void add_element(Collected& view, std::int32_t number, const model::Element& element, const model::ClusterTree& tree,
-                 const model::PatchSet& patches) {
+void add_element(Collected& view, std::int32_t number, const model::Element& element,
+                 const model::ClusterTree& tree, const model::PatchSet& patches) {
     if (element.patch) {
         const model::Surface& surface = patches.patches.at(element.patch->value).surface;
         for (std::uint32_t t = 0; t < element.triangle_count; ++t) {
             std::array<Vec3, 3> corners;
             for (std::size_t k = 0; k < 3; ++k)
                 corners[k] =
-                    geometry::evaluate(surface, tree.domain_triangles.at(element.first_triangle + t)[k]).position;
+                    geometry::evaluate(surface, tree.domain_triangles.at(element.first_triangle + t)[k])
+                        .position;
             view.add(corners, std::span(&one_triangle, 1));
         }
     } else if (element.cluster) {
         for (const std::uint32_t t : tree.clusters.at(element.cluster->value).triangles) {
             const auto& [a, b, c] = patches.small.triangles.at(t);
-            const std::array corners{patches.small.points.at(a), patches.small.points.at(b), patches.small.points.at(c)};
+            const std::array corners{patches.small.points.at(a), patches.small.points.at(b),
+                                     patches.small.points.at(c)};
             view.add(corners, std::span(&one_triangle, 1));
         }
     }
@@ -175,7 +178,8 @@ std::vector<std::string> object_file_names(const model::Scene& scene) {
     for (const model::Object& object : scene.objects) {
         const std::string wanted = file_name_of(object.name);
         std::string name = wanted;
-        for (int copy = 2; !taken.insert(lower_case(name)).second; ++copy) name = fmt::format("{}_{}", wanted, copy);
+        for (int copy = 2; !taken.insert(lower_case(name)).second; ++copy)
+            name = fmt::format("{}_{}", wanted, copy);
         names.push_back(name);
     }
     return names;
@@ -213,15 +217,18 @@ void write_patches_view(const fs::path& file, const model::PatchSet& patches, co
     for (std::size_t p = 0; p < patches.patches.size(); ++p)
         add_patch(view, static_cast<std::int32_t>(p), patches.patches[p]);
     add_small(view, patches.small);
-    write_vtk(file,
-              {.points = view.points,
-               .triangles = view.triangles,
-               .cell_arrays = {integers("PatchId", view.patches), integers("ObjectId", view.objects),
-                               integers("MaterialId", view.materials), integers("SurfaceType", view.types),
-                               {.name = "Deviation_m", .values = std::span<const double>(view.deviations)}},
-               .names = {{"ObjectNames", object_names(scene)},
-                         {"MaterialNames", material_names(scene)},
-                         {"SurfaceTypeNames", {"plane", "cylinder", "cone", "sphere", "torus", "B-spline"}}}});
+    write_vtk(
+        file,
+        {.points = view.points,
+         .triangles = view.triangles,
+         .cell_arrays = {integers("PatchId", view.patches),
+                         integers("ObjectId", view.objects),
+                         integers("MaterialId", view.materials),
+                         integers("SurfaceType", view.types),
+                         {.name = "Deviation_m", .values = std::span<const double>(view.deviations)}},
+         .names = {{"ObjectNames", object_names(scene)},
+                   {"MaterialNames", material_names(scene)},
+                   {"SurfaceTypeNames", {"plane", "cylinder", "cone", "sphere", "torus", "B-spline"}}}});
 }
 
 void write_clusters_view(const fs::path& file, const model::ClusterTree& tree, const model::PatchSet& patches,

@@ -24,7 +24,8 @@ std::vector<MeshFile> write_clean_meshes(const std::filesystem::path& folder, co
 model::Mesh read_clean_mesh(const std::filesystem::path& file);
 
 /// patches.vtu: the triangulated domains on their surfaces, and the small triangles.
-void write_patches_view(const std::filesystem::path& file, const model::PatchSet& patches, const model::Scene& scene);
+void write_patches_view(const std::filesystem::path& file, const model::PatchSet& patches,
+                        const model::Scene& scene);
 
 /// clusters.vtu: the pieces of patches on their surfaces, and the clusters' triangles.
 void write_clusters_view(const std::filesystem::path& file, const model::ClusterTree& tree,

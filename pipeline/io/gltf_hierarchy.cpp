@@ -49,7 +49,8 @@ Quat GltfTrack::at(double time_s) const {
     if (interpolation == model::Interpolation::Cubic) {
         // Hermite spline of the glTF 2.0 specification, appendix C.
         const double s2 = s * s, s3 = s2 * s;
-        const Quat value = values[k] * (2.0 * s3 - 3.0 * s2 + 1.0) + out_tangents[k] * (length * (s3 - 2.0 * s2 + s)) +
+        const Quat value = values[k] * (2.0 * s3 - 3.0 * s2 + 1.0) +
+                           out_tangents[k] * (length * (s3 - 2.0 * s2 + s)) +
                            values[k + 1] * (3.0 * s2 - 2.0 * s3) + in_tangents[k + 1] * (length * (s3 - s2));
         return is_rotation ? glm::normalize(value) : value;
     }
@@ -64,10 +65,13 @@ Mat4 GltfHierarchy::local_at(int node, std::optional<double> time_s) const {
     for (const GltfTrack& track : tracks) {
         if (!time_s || track.node != node) continue;
         const Quat value = track.at(*time_s);
-        if (track.is_rotation) rotation = value;
-        else translation = {value.x, value.y, value.z};
+        if (track.is_rotation)
+            rotation = value;
+        else
+            translation = {value.x, value.y, value.z};
     }
-    return glm::translate(Mat4(1.0), translation) * glm::mat4_cast(rotation) * glm::scale(Mat4(1.0), self.scale);
+    return glm::translate(Mat4(1.0), translation) * glm::mat4_cast(rotation) *
+           glm::scale(Mat4(1.0), self.scale);
 }
 
 Mat4 GltfHierarchy::world_at(int node, std::optional<double> time_s) const {
@@ -82,7 +86,8 @@ Mat4 GltfHierarchy::rest_world_from_node(int node) const { return world_at(node,
 
 int GltfHierarchy::mover_of(int node) const {
     for (; node >= 0; node = nodes[static_cast<std::size_t>(node)].parent)
-        if (std::any_of(tracks.begin(), tracks.end(), [&](const GltfTrack& t) { return t.node == node; })) return node;
+        if (std::any_of(tracks.begin(), tracks.end(), [&](const GltfTrack& t) { return t.node == node; }))
+            return node;
     return -1;
 }
 
@@ -102,7 +107,8 @@ std::optional<model::Motion> GltfHierarchy::motion_of(int mover, std::vector<std
         }
         moving_nodes += moves ? 1 : 0;
     }
-    const bool in_pieces = kinds.size() > 1 || (moving_nodes > 1 && *kinds.begin() != model::Interpolation::Step);
+    const bool in_pieces =
+        kinds.size() > 1 || (moving_nodes > 1 && *kinds.begin() != model::Interpolation::Step);
     motion.interpolation = in_pieces ? model::Interpolation::Linear : *kinds.begin();
     if (!in_pieces && motion.interpolation == model::Interpolation::Cubic)
         notes.push_back("animation of node '" + motion.name +
@@ -112,7 +118,8 @@ std::optional<model::Motion> GltfHierarchy::motion_of(int mover, std::vector<std
     if (std::abs(glm::determinant(Mat3(rest))) == 0.0) return std::nullopt;
     const Mat4 node_from_world = glm::inverse(rest);
     motion.pivot = Vec3(rest[3]);
-    for (const double time : in_pieces ? subdivided(key_times) : std::vector<double>(key_times.begin(), key_times.end())) {
+    for (const double time :
+         in_pieces ? subdivided(key_times) : std::vector<double>(key_times.begin(), key_times.end())) {
         const Mat4 world_from_rest = world_at(mover, time) * node_from_world;
         const Mat3 rotation(world_from_rest);
         if (!is_rigid(rotation)) return std::nullopt;

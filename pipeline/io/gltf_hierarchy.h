@@ -25,8 +25,8 @@ struct GltfTrack {
     int node = -1;
     bool is_rotation = false; ///< else a translation
     model::Interpolation interpolation = model::Interpolation::Linear;
-    std::vector<double> times_s; ///< strictly increasing, at least one
-    std::vector<Quat> values;    ///< one per key; a translation is kept in (x, y, z)
+    std::vector<double> times_s;                 ///< strictly increasing, at least one
+    std::vector<Quat> values;                    ///< one per key; a translation is kept in (x, y, z)
     std::vector<Quat> in_tangents, out_tangents; ///< one per key where the interpolation is cubic, else empty
 
     Quat at(double time_s) const; ///< clamped to the first and last key

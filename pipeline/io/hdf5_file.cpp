@@ -100,14 +100,17 @@ Handle creation_properties(const Hdf5Shape& shape, std::size_t value_size) {
 /// crashes on damaged files, so that it must not see one.
 constexpr std::size_t user_block = 512;
 
-std::string user_line(const std::string& hash) { return fmt::format("Kinelux HDF5 file, content hash {}\n", hash); }
+std::string user_line(const std::string& hash) {
+    return fmt::format("Kinelux HDF5 file, content hash {}\n", hash);
+}
 
 /// The hash of a file's bytes behind the user block; "" when it cannot be read or is no longer than that.
 std::string hash_behind_block(const std::filesystem::path& file) {
     std::error_code failed;
     const auto size = std::filesystem::file_size(file, failed);
     if (failed || size <= user_block) return "";
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
+                                                                 &std::fclose);
     if (!stream) return "";
     void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fileno(stream.get()), 0);
     if (bytes == MAP_FAILED) return "";
@@ -129,7 +132,8 @@ bool seal_is_whole(const std::filesystem::path& file) {
     const std::string hash = hash_behind_block(file), wanted = user_line(hash);
     std::string found(wanted.size(), '\0');
     std::ifstream in(file, std::ios::binary);
-    return !hash.empty() && in.read(found.data(), static_cast<std::streamsize>(found.size())) && found == wanted;
+    return !hash.empty() && in.read(found.data(), static_cast<std::streamsize>(found.size())) &&
+           found == wanted;
 }
 
 hid_t create_file(const std::filesystem::path& file) {
@@ -213,15 +217,17 @@ void Hdf5Writer::dataset(const std::string& name, const std::vector<std::array<s
 
 void Hdf5Writer::write(const std::string& name, Hdf5Type type, const void* values, std::size_t count,
                        const Hdf5Shape& shape) {
-    if (product(shape) != count) throw std::logic_error("dataset " + name + ": shape and number of values differ");
+    if (product(shape) != count)
+        throw std::logic_error("dataset " + name + ": shape and number of values differ");
     const std::vector<hsize_t> extent(shape.begin(), shape.end());
     const Handle space(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose);
     const Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(link, 1);
     const Handle creation = creation_properties(shape, H5Tget_size(disk_type(type)));
-    const Handle set(H5Dcreate2(handle_, name.c_str(), disk_type(type), space, link, creation, H5P_DEFAULT), H5Dclose);
-    const bool written =
-        set.valid() && (count == 0 || H5Dwrite(set, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    const Handle set(H5Dcreate2(handle_, name.c_str(), disk_type(type), space, link, creation, H5P_DEFAULT),
+                     H5Dclose);
+    const bool written = set.valid() && (count == 0 || H5Dwrite(set, memory_type(type), H5S_ALL, H5S_ALL,
+                                                                H5P_DEFAULT, values) >= 0);
     if (!written) throw cannot_write(file_);
 }
 
@@ -240,7 +246,8 @@ void Hdf5Writer::finish() {
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) {
     silence_library();
-    if (!seal_is_whole(file)) throw core::FileError("truncated, damaged, or not an HDF5 file of this program");
+    if (!seal_is_whole(file))
+        throw core::FileError("truncated, damaged, or not an HDF5 file of this program");
     handle_ = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     if (handle_ < 0) throw core::FileError("not an HDF5 file");
 }
@@ -281,7 +288,8 @@ Hdf5Shape Hdf5Reader::shape(const std::string& name) const {
 
 std::uint64_t Hdf5Reader::rows(const std::string& name) const { return shape(name).front(); }
 
-std::size_t Hdf5Reader::checked_size(const std::string& name, Hdf5Type type, const Hdf5Shape& expected) const {
+std::size_t Hdf5Reader::checked_size(const std::string& name, Hdf5Type type,
+                                     const Hdf5Shape& expected) const {
     const Hdf5Shape found = shape(name);
     if (found != expected)
         throw core::FileError(fmt::format("dataset '{}' has shape {}, expected {}", name, found, expected));
@@ -313,7 +321,8 @@ std::vector<Vec3> Hdf5Reader::points_3d(const std::string& name) const {
 }
 
 std::vector<std::array<std::uint32_t, 3>> Hdf5Reader::triangles(const std::string& name) const {
-    std::vector<std::array<std::uint32_t, 3>> triangles(checked_size(name, Hdf5Type::UInt32, {rows(name), 3}) / 3);
+    std::vector<std::array<std::uint32_t, 3>> triangles(
+        checked_size(name, Hdf5Type::UInt32, {rows(name), 3}) / 3);
     read(name, Hdf5Type::UInt32, triangles.data());
     return triangles;
 }

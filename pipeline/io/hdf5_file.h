@@ -22,11 +22,16 @@ enum class Hdf5Type { Float64, Float32, UInt8, Int32, UInt32, UInt64 };
 
 template <class Value>
 constexpr Hdf5Type hdf5_type() {
-    if constexpr (std::is_same_v<Value, double>) return Hdf5Type::Float64;
-    else if constexpr (std::is_same_v<Value, float>) return Hdf5Type::Float32;
-    else if constexpr (std::is_same_v<Value, std::uint8_t>) return Hdf5Type::UInt8;
-    else if constexpr (std::is_same_v<Value, std::int32_t>) return Hdf5Type::Int32;
-    else if constexpr (std::is_same_v<Value, std::uint32_t>) return Hdf5Type::UInt32;
+    if constexpr (std::is_same_v<Value, double>)
+        return Hdf5Type::Float64;
+    else if constexpr (std::is_same_v<Value, float>)
+        return Hdf5Type::Float32;
+    else if constexpr (std::is_same_v<Value, std::uint8_t>)
+        return Hdf5Type::UInt8;
+    else if constexpr (std::is_same_v<Value, std::int32_t>)
+        return Hdf5Type::Int32;
+    else if constexpr (std::is_same_v<Value, std::uint32_t>)
+        return Hdf5Type::UInt32;
     else {
         static_assert(std::is_same_v<Value, std::uint64_t>, "not a type of our HDF5 files");
         return Hdf5Type::UInt64;
@@ -65,7 +70,8 @@ public:
     void finish();
 
 private:
-    void write(const std::string& name, Hdf5Type type, const void* values, std::size_t count, const Hdf5Shape& shape);
+    void write(const std::string& name, Hdf5Type type, const void* values, std::size_t count,
+               const Hdf5Shape& shape);
 
     std::filesystem::path file_, part_;
     std::int64_t handle_ = -1; ///< a hid_t
@@ -79,8 +85,8 @@ public:
     Hdf5Reader(const Hdf5Reader&) = delete;
     Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-    std::string text(const std::string& name) const; ///< an attribute
-    double number(const std::string& name) const;    ///< an attribute
+    std::string text(const std::string& name) const;     ///< an attribute
+    double number(const std::string& name) const;        ///< an attribute
     std::int64_t integer(const std::string& name) const; ///< an attribute
 
     Hdf5Shape shape(const std::string& name) const;

@@ -53,7 +53,8 @@ std::string read_bytes(const fs::path& file) {
 
 std::string unique_name(const std::string& wanted, std::set<std::string>& taken) {
     std::string name = wanted;
-    for (int number = 2; !taken.insert(name).second; ++number) name = wanted + " (" + std::to_string(number) + ")";
+    for (int number = 2; !taken.insert(name).second; ++number)
+        name = wanted + " (" + std::to_string(number) + ")";
     return name;
 }
 
@@ -79,7 +80,8 @@ MaterialId MaterialCollector::add(const std::string& name, const Vec3& reflectan
     const auto clamped = [&](const Vec3& rgb, double highest) {
         Vec3 result{0.0};
         for (int c = 0; c < 3; ++c) {
-            if (!std::isfinite(rgb[c])) throw core::FileError("material '" + name + "' has a colour that is not finite");
+            if (!std::isfinite(rgb[c]))
+                throw core::FileError("material '" + name + "' has a colour that is not finite");
             result[c] = std::clamp(rgb[c], 0.0, highest);
             changed = changed || result[c] != rgb[c];
         }

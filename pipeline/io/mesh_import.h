@@ -44,7 +44,8 @@ struct MeshFile {
 std::string read_bytes(const std::filesystem::path& file);
 
 /// read_mesh for a file that may name others (MTL, .bin): those must lie in `tree`; the file itself need not.
-ImportedMeshes read_mesh_inside(const std::filesystem::path& file, std::size_t channels, const FolderTree& tree);
+ImportedMeshes read_mesh_inside(const std::filesystem::path& file, std::size_t channels,
+                                const FolderTree& tree);
 
 ImportedMeshes read_obj(const MeshFile& file);
 ImportedMeshes read_gltf(const MeshFile& file);
@@ -58,7 +59,8 @@ public:
     /// @param reflectance  RGB [1]; above 0.95 is lowered to that, below 0 raised to 0
     /// @param exitance     RGB [W/m2 or lm/m2]; below 0 raised to 0
     /// @throws FileError  a value is not finite
-    MaterialId add(const std::string& name, const Vec3& reflectance, const Vec3& exitance, model::Sides sides);
+    MaterialId add(const std::string& name, const Vec3& reflectance, const Vec3& exitance,
+                   model::Sides sides);
     /// The material of faces that have none: grey, reflectance 0.5. Made when first asked for.
     MaterialId default_grey();
     /// A material that faces name and no file describes: grey like the default, under its own name.

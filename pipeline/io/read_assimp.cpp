@@ -2,12 +2,14 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
-#include <memory>
 #include <optional>
+#include <sstream>
 
 #include <glm/geometric.hpp>
 
@@ -43,16 +45,16 @@ private:
 
 const aiScene* import(Assimp::Importer& importer, const MeshFile& file, const std::string& hint) {
     importer.SetIOHandler(new GuardedFiles(file)); // the importer owns it
-    // Points and lines are dropped after they have been split from the triangles; nothing else is changed.
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    constexpr unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices;
+    // No post-processing: its steps abort the program on broken files, and polygons and points are ours to cut and join.
+    constexpr unsigned steps = 0;
     const auto fail = [&](const std::string& reason) {
         throw core::FileError(file.name() + ": cannot be read as a mesh: " + reason);
     };
     const aiScene* scene = nullptr;
     try {
-        scene = hint.empty() ? importer.ReadFile(file.name(), steps)
-                             : importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(), steps, hint.c_str());
+        scene = hint.empty()
+                    ? importer.ReadFile(file.name(), steps)
+                    : importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(), steps, hint.c_str());
     } catch (const std::exception& error) {
         fail(error.what());
     } catch (...) {
@@ -62,8 +64,27 @@ const aiScene* import(Assimp::Importer& importer, const MeshFile& file, const st
     return scene;
 }
 
+// The counts that OFF and PLY files start with, before Assimp makes room for them: each item takes at least a byte.
+void check_counts(const MeshFile& file, const std::string& format) {
+    std::istringstream lines(file.bytes.substr(0, 65536));
+    std::string word, kind;
+    double count = 0.0, largest = 0.0;
+    if (format == "off" && lines >> word >> count) largest = count;
+    if (format == "off" && lines >> count) largest = std::max(largest, count);
+    for (std::string line; format == "ply" && std::getline(lines, line) && !line.starts_with("end_header");) {
+        std::istringstream words(line);
+        if (words >> word >> kind >> count && word == "element") largest = std::max(largest, count);
+    }
+    if (largest > static_cast<double>(file.bytes.size()))
+        throw core::FileError(file.name() +
+                              ": is truncated: it promises more points or faces than it has bytes");
+}
+
 Mat4 matrix_of(const aiMatrix4x4& m) {
-    return {{m.a1, m.b1, m.c1, m.d1}, {m.a2, m.b2, m.c2, m.d2}, {m.a3, m.b3, m.c3, m.d3}, {m.a4, m.b4, m.c4, m.d4}};
+    return {{m.a1, m.b1, m.c1, m.d1},
+            {m.a2, m.b2, m.c2, m.d2},
+            {m.a3, m.b3, m.c3, m.d3},
+            {m.a4, m.b4, m.c4, m.d4}};
 }
 
 // The axis that a turn of Assimp's root node takes to y: formats whose up axis is another one are turned by it.
@@ -85,16 +106,19 @@ Mat4 turn_from_y_to(int axis) {
 
 class AssimpReader {
 public:
-    AssimpReader(const MeshFile& file, const aiScene& scene) : file_(file), scene_(scene), collector_(file.channels) {}
+    AssimpReader(const MeshFile& file, const aiScene& scene)
+        : file_(file), scene_(scene), collector_(file.channels) {}
 
     ImportedMeshes read(const std::string& format) {
         const Mat4 root = root_correction(format);
         visit(*scene_.mRootNode, root, {}, 0);
         if (scene_.HasAnimations()) result_.notes.emplace_back("animations are read from glTF files only");
         if (scene_.HasLights()) result_.notes.emplace_back("lights without a surface are not read");
-        if (textured_) result_.notes.emplace_back("textures are not read, only the plain colours of materials");
+        if (textured_)
+            result_.notes.emplace_back("textures are not read, only the plain colours of materials");
         if (dropped_faces_ > 0)
-            result_.notes.push_back(std::to_string(dropped_faces_) + " points, lines or broken faces are left out");
+            result_.notes.push_back(std::to_string(dropped_faces_) +
+                                    " points, lines or broken faces are left out");
         collector_.finish(result_);
         return std::move(result_);
     }
@@ -119,7 +143,8 @@ private:
         float single = 0.0F;
         const aiMetadata* data = scene_.mMetaData;
         if (data == nullptr) return;
-        if (!data->Get("UnitScaleFactor", centimetres) && data->Get("UnitScaleFactor", single)) centimetres = single;
+        if (!data->Get("UnitScaleFactor", centimetres) && data->Get("UnitScaleFactor", single))
+            centimetres = single;
         if (!(centimetres > 0.0)) return;
         result_.metres_per_unit = 0.01 * centimetres;
         result_.unit_stated = true;
@@ -139,7 +164,8 @@ private:
     void add_object(const aiNode& node, const Mat4& world, std::vector<std::string> names) {
         model::Object object;
         for (unsigned i = 0; i < node.mNumMeshes; ++i)
-            if (node.mMeshes[i] < scene_.mNumMeshes) append(*scene_.mMeshes[node.mMeshes[i]], world, object.mesh);
+            if (node.mMeshes[i] < scene_.mNumMeshes)
+                append(*scene_.mMeshes[node.mMeshes[i]], world, object.mesh);
         if (object.mesh.triangles.empty()) return;
         std::string name = node.mName.C_Str();
         const bool plain = name.empty() || name.front() == '<' || &node == scene_.mRootNode;
@@ -152,25 +178,44 @@ private:
     }
 
     void append(const aiMesh& part, const Mat4& world, model::Mesh& mesh) {
-        const auto base = static_cast<std::uint32_t>(mesh.points.size());
+        std::vector<std::uint32_t> numbers; // in `mesh`, of the points of `part`; those at one place are one
+        std::map<std::array<double, 3>, std::uint32_t> known;
         for (unsigned i = 0; i < part.mNumVertices; ++i) {
             const aiVector3D& p = part.mVertices[i];
-            mesh.points.emplace_back(world * glm::dvec4(p.x, p.y, p.z, 1.0));
+            const Vec3 point(world * glm::dvec4(p.x, p.y, p.z, 1.0));
+            const auto [place, is_new] = known.try_emplace({point.x, point.y, point.z}, mesh.points.size());
+            if (is_new) mesh.points.push_back(point);
+            numbers.push_back(place->second);
         }
         const MaterialId material = material_of(part.mMaterialIndex);
         const bool mirrored = glm::determinant(Mat3(world)) < 0.0;
         for (unsigned f = 0; f < part.mNumFaces; ++f, ++face_) {
-            const aiFace& face = part.mFaces[f];
-            if (face.mNumIndices != 3) {
+            const std::vector<std::uint32_t> corners = corners_of(part.mFaces[f], numbers);
+            if (corners.size() < 3) {
                 ++dropped_faces_;
                 continue;
             }
-            model::Triangle triangle{base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]};
-            if (mirrored) std::swap(triangle[1], triangle[2]);
-            mesh.triangles.push_back(triangle);
-            mesh.materials.push_back(material);
-            mesh.source_faces.push_back(face_);
+            std::vector<Vec3> points;
+            points.reserve(corners.size());
+            for (const std::uint32_t corner : corners) points.push_back(mesh.points[corner]);
+            for (model::Triangle t : triangulate_polygon(points)) {
+                if (mirrored) std::swap(t[1], t[2]);
+                mesh.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+                mesh.materials.push_back(material);
+                mesh.source_faces.push_back(face_);
+            }
         }
+    }
+
+    // Nothing where an index is out of range.
+    static std::vector<std::uint32_t> corners_of(const aiFace& face,
+                                                 const std::vector<std::uint32_t>& numbers) {
+        std::vector<std::uint32_t> corners;
+        for (unsigned i = 0; i < face.mNumIndices; ++i) {
+            if (face.mIndices[i] >= numbers.size()) return {};
+            corners.push_back(numbers[face.mIndices[i]]);
+        }
+        return corners;
     }
 
     MaterialId material_of(unsigned index) {
@@ -189,9 +234,9 @@ private:
         const bool made_up = text == AI_DEFAULT_MATERIAL_NAME || text.empty();
         if (made_up || material.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) != AI_SUCCESS)
             return materials_[index] = made_up ? collector_.default_grey() : collector_.undescribed(text);
-        return materials_[index] =
-                   collector_.add(text, {diffuse.r, diffuse.g, diffuse.b}, {emission.r, emission.g, emission.b},
-                                  two_sided != 0 ? model::Sides::Both : model::Sides::Auto);
+        return materials_[index] = collector_.add(text, {diffuse.r, diffuse.g, diffuse.b},
+                                                  {emission.r, emission.g, emission.b},
+                                                  two_sided != 0 ? model::Sides::Both : model::Sides::Auto);
     }
 
     const MeshFile& file_;
@@ -208,12 +253,13 @@ private:
 } // namespace
 
 ImportedMeshes read_assimp(const MeshFile& file, const std::string& hint) {
-    Assimp::DefaultLogger::kill(); // nothing on our terminal
-    Assimp::Importer importer;
-    const aiScene* scene = import(importer, file, hint);
     std::string format = hint;
     if (format.empty() && !file.path.extension().empty()) format = file.path.extension().string().substr(1);
     for (char& c : format) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    check_counts(file, format);
+    Assimp::DefaultLogger::kill(); // nothing on our terminal
+    Assimp::Importer importer;
+    const aiScene* scene = import(importer, file, hint);
     return AssimpReader(file, *scene).read(format);
 }
 

@@ -71,14 +71,15 @@ tinygltf::FsCallbacks guarded_files(FileAccess& access) {
     tinygltf::FsCallbacks callbacks{};
     callbacks.user_data = &access;
     callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-        return false;
-    };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                                  void*) { return false; };
     callbacks.FileExists = [](const std::string& path, void* data) {
         std::error_code error;
-        return static_cast<FileAccess*>(data)->readable(path) && std::filesystem::is_regular_file(path, error);
+        return static_cast<FileAccess*>(data)->readable(path) &&
+               std::filesystem::is_regular_file(path, error);
     };
-    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& path, void* data) {
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& path,
+                                 void* data) {
         FileAccess& own = *static_cast<FileAccess*>(data);
         try {
             own.file->tree.require(path);
@@ -105,8 +106,8 @@ tinygltf::Model load(const MeshFile& file) {
     FileAccess access{&file, {}};
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks(guarded_files(access));
-    loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                             void*) { return true; },
+    loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int,
+                             const unsigned char*, int, void*) { return true; },
                           nullptr);
     const std::string folder = std::filesystem::absolute(file.path).parent_path().string();
     tinygltf::Model model;
@@ -116,7 +117,8 @@ tinygltf::Model load(const MeshFile& file) {
         if (file.bytes.starts_with("glTF")) {
             check_binary_frame(file);
             good = loader.LoadBinaryFromMemory(&model, &errors, &warnings,
-                                               reinterpret_cast<const unsigned char*>(file.bytes.data()), size, folder);
+                                               reinterpret_cast<const unsigned char*>(file.bytes.data()),
+                                               size, folder);
         } else {
             good = loader.LoadASCIIFromString(&model, &errors, &warnings, file.bytes.data(), size, folder);
         }
@@ -126,9 +128,11 @@ tinygltf::Model load(const MeshFile& file) {
         refuse(file, std::string("is not valid glTF: ") + error.what());
     }
     if (!access.failure.empty()) throw core::FileError(access.failure);
+    if (!good && file.bytes.find("_mesh_compression\"") != std::string::npos)
+        refuse(file, "uses mesh compression, which is not read; save it without");
     if (!good) refuse(file, "is not valid glTF 2.0: " + one_line(errors));
-    if (!model.asset.version.starts_with("2.")) refuse(file, "is of glTF version " + model.asset.version +
-                                                                 "; convert it to glTF 2.0");
+    if (!model.asset.version.starts_with("2."))
+        refuse(file, "is of glTF version " + model.asset.version + "; convert it to glTF 2.0");
     for (const std::string& extension : model.extensionsRequired)
         if (extension.find("compression") != std::string::npos)
             refuse(file, "needs " + extension + ", which is not read; save it without mesh compression");
@@ -197,16 +201,20 @@ private:
         if (accessor.type != wanted_type) fail(name + " is of the wrong type");
         const tinygltf::BufferView& view = item(model_.bufferViews, accessor.bufferView, "buffer view");
         const std::vector<unsigned char>& data = item(model_.buffers, view.buffer, "buffer").data;
-        const int component_size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
+        const int component_size =
+            tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
         const int stride = accessor.ByteStride(view);
         if (component_size <= 0 || stride <= 0) fail(name + " has a bad layout");
-        const auto components = static_cast<Index>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(wanted_type)));
-        const Index element = components * static_cast<Index>(component_size), step = static_cast<Index>(stride);
-        const bool inside = view.byteOffset <= data.size() && view.byteLength <= data.size() - view.byteOffset &&
-                            accessor.byteOffset <= view.byteLength &&
-                            (accessor.count == 0 ||
-                             (element <= view.byteLength - accessor.byteOffset &&
-                              accessor.count - 1 <= (view.byteLength - accessor.byteOffset - element) / step));
+        const auto components =
+            static_cast<Index>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(wanted_type)));
+        const Index element = components * static_cast<Index>(component_size),
+                    step = static_cast<Index>(stride);
+        const bool inside =
+            view.byteOffset <= data.size() && view.byteLength <= data.size() - view.byteOffset &&
+            accessor.byteOffset <= view.byteLength &&
+            (accessor.count == 0 ||
+             (element <= view.byteLength - accessor.byteOffset &&
+              accessor.count - 1 <= (view.byteLength - accessor.byteOffset - element) / step));
         if (!inside) fail(name + " reaches beyond its buffer; the file is truncated or damaged");
         std::vector<double> values;
         values.reserve(accessor.count * components);
@@ -238,7 +246,8 @@ private:
         }
         for (Index i = 0; i < model_.nodes.size(); ++i) {
             Index steps = 0;
-            for (int node = static_cast<int>(i); node >= 0; node = hierarchy_.nodes[static_cast<Index>(node)].parent)
+            for (int node = static_cast<int>(i); node >= 0;
+                 node = hierarchy_.nodes[static_cast<Index>(node)].parent)
                 if (++steps > model_.nodes.size()) fail("its nodes are parents of each other in a circle");
         }
     }
@@ -264,9 +273,10 @@ private:
             GltfTrack track;
             track.node = channel.target_node;
             track.is_rotation = channel.target_path == "rotation";
-            const bool taken = std::any_of(hierarchy_.tracks.begin(), hierarchy_.tracks.end(), [&](const GltfTrack& t) {
-                return t.node == track.node && t.is_rotation == track.is_rotation;
-            });
+            const bool taken =
+                std::any_of(hierarchy_.tracks.begin(), hierarchy_.tracks.end(), [&](const GltfTrack& t) {
+                    return t.node == track.node && t.is_rotation == track.is_rotation;
+                });
             if (taken || node.matrix) {
                 result_.notes.push_back(where + (taken ? ": only the first of several animations is read"
                                                        : ": refused, the node is placed by a matrix"));
@@ -277,7 +287,8 @@ private:
         }
     }
 
-    void read_keys(const tinygltf::AnimationSampler& sampler, const std::string& where, GltfTrack& track) const {
+    void read_keys(const tinygltf::AnimationSampler& sampler, const std::string& where,
+                   GltfTrack& track) const {
         track.interpolation = sampler.interpolation == "STEP"          ? model::Interpolation::Step
                               : sampler.interpolation == "CUBICSPLINE" ? model::Interpolation::Cubic
                                                                        : model::Interpolation::Linear;
@@ -286,11 +297,12 @@ private:
             if (!std::isfinite(track.times_s[k]) || (k > 0 && !(track.times_s[k] > track.times_s[k - 1])))
                 fail(where + ": its key times do not increase");
         const Index width = track.is_rotation ? 4 : 3;
-        const std::vector<double> values =
-            numbers(sampler.output, track.is_rotation ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, "key values");
+        const std::vector<double> values = numbers(
+            sampler.output, track.is_rotation ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, "key values");
         const bool cubic = track.interpolation == model::Interpolation::Cubic;
         const Index keys = track.times_s.size(), per_key = cubic ? 3 : 1;
-        if (keys == 0 || values.size() != keys * per_key * width) fail(where + ": key times and values differ in number");
+        if (keys == 0 || values.size() != keys * per_key * width)
+            fail(where + ": key times and values differ in number");
         if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
             fail(where + ": a key value is not finite");
         const auto raw = [&](Index entry) {
@@ -299,7 +311,8 @@ private:
         };
         for (Index k = 0; k < keys; ++k) {
             const Index entry = cubic ? 3 * k + 1 : k;
-            track.values.push_back(track.is_rotation ? unit_quaternion(values.data() + entry * width) : raw(entry));
+            track.values.push_back(track.is_rotation ? unit_quaternion(values.data() + entry * width)
+                                                     : raw(entry));
             if (!cubic) continue;
             track.in_tangents.push_back(raw(entry - 1));
             track.out_tangents.push_back(raw(entry + 1));
@@ -311,7 +324,8 @@ private:
         std::vector<int> roots;
         if (!model_.scenes.empty()) {
             roots = item(model_.scenes, std::max(model_.defaultScene, 0), "scene").nodes;
-            if (model_.scenes.size() > 1) result_.notes.emplace_back("only the default one of several scenes is read");
+            if (model_.scenes.size() > 1)
+                result_.notes.emplace_back("only the default one of several scenes is read");
         } else {
             for (Index i = 0; i < model_.nodes.size(); ++i)
                 if (hierarchy_.nodes[i].parent < 0) roots.push_back(static_cast<int>(i));
@@ -333,7 +347,8 @@ private:
         const std::string& name = hierarchy_.nodes[static_cast<Index>(node)].name;
         const Mat4 world = hierarchy_.rest_world_from_node(node);
         const tinygltf::Mesh& mesh = item(model_.meshes, model_.nodes[static_cast<Index>(node)].mesh, "mesh");
-        for (const tinygltf::Primitive& primitive : mesh.primitives) append(primitive, world, object.mesh, name);
+        for (const tinygltf::Primitive& primitive : mesh.primitives)
+            append(primitive, world, object.mesh, name);
         if (object.mesh.triangles.empty()) return;
         object.name = unique_name(name, taken_);
         object.source = file_.name() + ":" + name;
@@ -361,7 +376,8 @@ private:
         return motions_[mover] = MotionId(result_.motions.size() - 1);
     }
 
-    void append(const tinygltf::Primitive& primitive, const Mat4& world, model::Mesh& mesh, const std::string& node) {
+    void append(const tinygltf::Primitive& primitive, const Mat4& world, model::Mesh& mesh,
+                const std::string& node) {
         const bool is_surface = primitive.mode == TINYGLTF_MODE_TRIANGLES ||
                                 primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
                                 primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
@@ -374,7 +390,8 @@ private:
         const Index count = values.size() / 3;
         const auto base = static_cast<std::uint32_t>(mesh.points.size());
         for (Index i = 0; i < count; ++i)
-            mesh.points.emplace_back(world * glm::dvec4(values[3 * i], values[3 * i + 1], values[3 * i + 2], 1.0));
+            mesh.points.emplace_back(world *
+                                     glm::dvec4(values[3 * i], values[3 * i + 1], values[3 * i + 2], 1.0));
 
         std::vector<std::uint32_t> corners(count);
         for (Index i = 0; i < count; ++i) corners[i] = static_cast<std::uint32_t>(i);
@@ -383,7 +400,8 @@ private:
             corners.clear();
             for (const double index : indices) {
                 if (!(index >= 0.0 && index < static_cast<double>(count)))
-                    throw core::GeometryError(file_.name() + ": node '" + node + "' names a vertex that does not exist");
+                    throw core::GeometryError(file_.name() + ": node '" + node +
+                                              "' names a vertex that does not exist");
                 corners.push_back(static_cast<std::uint32_t>(index));
             }
         }
@@ -407,9 +425,12 @@ private:
             return result;
         }
         for (Index i = 0; i + 2 < corners.size(); ++i) {
-            if (mode == TINYGLTF_MODE_TRIANGLE_FAN) result.push_back({corners[i + 1], corners[i + 2], corners[0]});
-            else if (i % 2 == 0) result.push_back({corners[i], corners[i + 1], corners[i + 2]});
-            else result.push_back({corners[i], corners[i + 2], corners[i + 1]});
+            if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+                result.push_back({corners[i + 1], corners[i + 2], corners[0]});
+            else if (i % 2 == 0)
+                result.push_back({corners[i], corners[i + 1], corners[i + 2]});
+            else
+                result.push_back({corners[i], corners[i + 2], corners[i + 1]});
         }
         return result;
     }
@@ -430,8 +451,8 @@ private:
         const std::string name = material.name.empty() ? "material " + std::to_string(index) : material.name;
         if (pbr.baseColorTexture.index >= 0 || material.emissiveTexture.index >= 0) textured_.push_back(name);
         if (material.alphaMode == "BLEND") transparent_.push_back(name);
-        return materials_[index] = collector_.add(name, colour, emission,
-                                                  material.doubleSided ? model::Sides::Both : model::Sides::Auto);
+        return materials_[index] = collector_.add(
+                   name, colour, emission, material.doubleSided ? model::Sides::Both : model::Sides::Auto);
     }
 
     void note_what_is_left_out() {
@@ -440,13 +461,17 @@ private:
             notes.push_back("textures are not read, only the factors of: " + short_list(textured_));
         if (!transparent_.empty())
             notes.push_back("transparent materials are opaque here: " + short_list(transparent_));
-        if (lines_ > 0) notes.push_back(std::to_string(lines_) + " primitives of points or lines are left out");
-        if (!model_.skins.empty()) notes.emplace_back("skins are not read; their meshes keep the shape they are stored in");
+        if (lines_ > 0)
+            notes.push_back(std::to_string(lines_) + " primitives of points or lines are left out");
+        if (!model_.skins.empty())
+            notes.emplace_back("skins are not read; their meshes keep the shape they are stored in");
         std::vector<std::string> lights;
-        for (const tinygltf::Light& light : model_.lights) lights.push_back(light.type + " light '" + light.name + "'");
+        for (const tinygltf::Light& light : model_.lights)
+            lights.push_back(light.type + " light '" + light.name + "'");
         if (!lights.empty())
-            notes.push_back("lights without a surface (KHR_lights_punctual) are not read; emissive materials are: " +
-                            short_list(lights));
+            notes.push_back(
+                "lights without a surface (KHR_lights_punctual) are not read; emissive materials are: " +
+                short_list(lights));
     }
 
     const MeshFile& file_;

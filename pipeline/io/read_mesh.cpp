@@ -78,12 +78,17 @@ ImportedMeshes dispatch(const MeshFile& file) {
     if (format.empty()) format = extension;
     if (format == "obj") return read_obj(file);
     if (format == "gltf" || format == "glb") return read_gltf(file);
+    const std::string_view head = std::string_view(file.bytes).substr(0, 4096);
+    if (format == "step" && head.find("IFC") == std::string_view::npos)
+        throw core::FileError(file.name() +
+                              ": is a CAD STEP file, which is not read; export it as OBJ or glTF");
     return read_assimp(file, same_format(format, extension) ? "" : format);
 }
 
 } // namespace
 
-ImportedMeshes read_mesh_inside(const std::filesystem::path& path, std::size_t channels, const FolderTree& tree) {
+ImportedMeshes read_mesh_inside(const std::filesystem::path& path, std::size_t channels,
+                                const FolderTree& tree) {
     MeshFile file{path, read_bytes(path), channels, tree};
     if (file.bytes.empty()) throw core::FileError(file.name() + ": is empty");
     if (file.bytes.starts_with("\xEF\xBB\xBF")) file.bytes.erase(0, 3);

@@ -59,8 +59,10 @@ double parse_coordinate(std::string_view& rest, const std::string& where) {
     if (error == std::errc::result_out_of_range && end != rest.data())
         throw core::GeometryError(where + ": a coordinate is too large or too small for a double");
     if (error != std::errc{})
-        throw core::FileError(where + ": expected three coordinates after 'v'; the file is damaged or truncated");
-    if (!std::isfinite(value)) throw core::GeometryError(where + ": the vertex has a coordinate that is not finite");
+        throw core::FileError(where +
+                              ": expected three coordinates after 'v'; the file is damaged or truncated");
+    if (!std::isfinite(value))
+        throw core::GeometryError(where + ": the vertex has a coordinate that is not finite");
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
     return value;
 }
@@ -89,7 +91,8 @@ std::string joined_lines(const std::string& text) {
     joined.reserve(text.size());
     std::size_t owed = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const std::size_t after = text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '\r' ? i + 2 : i + 1;
+        const std::size_t after =
+            text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '\r' ? i + 2 : i + 1;
         if (text[i] == '\\' && after < text.size() && text[after] == '\n') {
             joined += ' ';
             ++owed;
@@ -147,15 +150,18 @@ struct Faces {
 
     void add(const tinyobj::index_t* indices, std::size_t count) {
         Polygon polygon{corners.size(), count, faces++, material};
-        for (std::size_t i = 0; i < count; ++i) corners.push_back(resolved(indices[i].vertex_index, polygon.face));
-        if (count < 3) ++degenerate;
-        else groups[group].polygons.push_back(polygon);
+        for (std::size_t i = 0; i < count; ++i)
+            corners.push_back(resolved(indices[i].vertex_index, polygon.face));
+        if (count < 3)
+            ++degenerate;
+        else
+            groups[group].polygons.push_back(polygon);
     }
 
     // OBJ counts from 1, or backwards from the last vertex read so far. Bounds against the whole file, as others do.
     std::uint32_t resolved(int index, std::uint32_t face) const {
-        const auto position = index > 0 ? static_cast<long long>(index) - 1
-                                        : static_cast<long long>(points) + index;
+        const auto position =
+            index > 0 ? static_cast<long long>(index) - 1 : static_cast<long long>(points) + index;
         if (index == 0 || position < 0)
             throw core::GeometryError(line_of_face(*file, face) + ": face " + std::to_string(face + 1) +
                                       " names vertex " + std::to_string(index) + ", which does not exist");
@@ -214,7 +220,8 @@ void read_library(const MeshFile& file, const std::string& name, MaterialLibrari
 }
 
 // One mtllib may name several files, and a file name may hold blanks: it is one name if there is such a file.
-MaterialLibraries read_libraries(const MeshFile& file, const Prepared& prepared, std::vector<std::string>& notes) {
+MaterialLibraries read_libraries(const MeshFile& file, const Prepared& prepared,
+                                 std::vector<std::string>& notes) {
     MaterialLibraries libraries;
     std::set<std::string> seen;
     for (const std::string& operand : prepared.libraries) {
@@ -254,8 +261,10 @@ std::vector<MaterialId> add_materials(const Faces& faces, const MaterialLibrarie
                                {material.emission[0], material.emission[1], material.emission[2]},
                                model::Sides::Auto);
     }
-    if (!textured.empty()) notes.push_back("textures are not read, only Kd and Ke, in: " + short_list(textured));
-    if (!transparent.empty()) notes.push_back("transparent materials are opaque here: " + short_list(transparent));
+    if (!textured.empty())
+        notes.push_back("textures are not read, only Kd and Ke, in: " + short_list(textured));
+    if (!transparent.empty())
+        notes.push_back("transparent materials are opaque here: " + short_list(transparent));
     return ids;
 }
 
@@ -303,8 +312,9 @@ private:
     static constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
 
     [[noreturn]] void refuse(const Polygon& polygon, std::uint32_t point) const {
-        throw core::GeometryError(line_of_face(file_, polygon.face) + ": face " + std::to_string(polygon.face + 1) +
-                                  " names vertex " + std::to_string(point + 1) + ", but the file has " +
+        throw core::GeometryError(line_of_face(file_, polygon.face) + ": face " +
+                                  std::to_string(polygon.face + 1) + " names vertex " +
+                                  std::to_string(point + 1) + ", but the file has " +
                                   std::to_string(points_.size()));
     }
 
@@ -344,7 +354,8 @@ ImportedMeshes read_obj(const MeshFile& original) {
         result.groups.push_back(std::move(names));
     }
     if (faces.degenerate > 0)
-        result.notes.push_back(std::to_string(faces.degenerate) + " faces with fewer than three corners are left out");
+        result.notes.push_back(std::to_string(faces.degenerate) +
+                               " faces with fewer than three corners are left out");
     collector.finish(result);
     return result;
 }

@@ -22,7 +22,8 @@ constexpr double bare_frames_per_second = 24.0;
 constexpr double most_bare_frames = 240.0;
 
 double metres_per(const std::string& unit) {
-    const std::map<std::string, double> table{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+    const std::map<std::string, double> table{
+        {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
     return table.at(unit);
 }
 
@@ -30,7 +31,8 @@ void warn_where_dark_or_still(const model::Scene& scene) {
     if (std::none_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.emits(); }))
         core::log_warning(scene.source.string() + ": no material emits light; everything will be black");
     if (!scene.motions.empty() && scene.time.frames == 1)
-        core::log_warning(scene.source.string() + ": something moves, but there is only one frame; set [time] frames");
+        core::log_warning(scene.source.string() +
+                          ": something moves, but there is only one frame; set [time] frames");
 }
 
 void add_time(const SceneDocument& document, model::Scene& scene) {
@@ -38,7 +40,8 @@ void add_time(const SceneDocument& document, model::Scene& scene) {
     scene.time.start_s = section.number("start_s").value_or(0.0);
     scene.time.end_s = section.number("end_s").value_or(scene.time.start_s);
     scene.time.frames = static_cast<std::uint32_t>(section.number("frames").value_or(1.0));
-    if (scene.time.end_s < scene.time.start_s) document.fail(section.line_of("end_s"), "end_s is before start_s");
+    if (scene.time.end_s < scene.time.start_s)
+        document.fail(section.line_of("end_s"), "end_s is before start_s");
     if (scene.time.frames > 1 && scene.time.end_s == scene.time.start_s)
         document.fail(section.line_of("frames"), "several frames need an end_s later than start_s");
 }
@@ -102,11 +105,13 @@ model::Scene read_scene_file(const std::filesystem::path& file, Outside outside)
     model::Scene scene;
     scene.source = file;
     scene.title = section.text("title").value_or(file.stem().string());
-    scene.quantity = section.text("quantity").value_or("radiometric") == "photometric" ? model::Quantity::Photometric
-                                                                                       : model::Quantity::Radiometric;
+    scene.quantity = section.text("quantity").value_or("radiometric") == "photometric"
+                         ? model::Quantity::Photometric
+                         : model::Quantity::Radiometric;
     scene.channels = section.texts("channels").value_or(std::vector<std::string>{"red", "green", "blue"});
     const std::set<std::string> distinct(scene.channels.begin(), scene.channels.end());
-    if (distinct.size() != scene.channels.size()) document.fail(section.line_of("channels"), "two channels have one name");
+    if (distinct.size() != scene.channels.size())
+        document.fail(section.line_of("channels"), "two channels have one name");
 
     const double metres = metres_per(section.text("length_unit").value_or("m"));
     SceneBuilder builder(document, tree, metres, scene);
@@ -145,7 +150,8 @@ model::Scene read_bare_mesh(const std::filesystem::path& file, Outside outside) 
     scene.channels = {"red", "green", "blue"};
     ImportedMeshes meshes = read_mesh_inside(file, scene.channels.size(), tree);
     for (const std::string& note : meshes.notes) core::log_info(file.string() + ": " + note);
-    if (!meshes.unit_stated) core::log_info(file.string() + ": states no unit; its lengths are taken as metres");
+    if (!meshes.unit_stated)
+        core::log_info(file.string() + ": states no unit; its lengths are taken as metres");
     if (meshes.up != Vec3(0.0)) scene.up = meshes.up;
     scene.view.up = scene.up;
 
@@ -167,7 +173,8 @@ model::Scene read_scene(const std::filesystem::path& file, const ReadSceneOption
     const Outside outside = options.allow_outside ? Outside::Allowed : Outside::Refused;
     std::string extension = file.extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    model::Scene scene = extension == ".toml" ? read_scene_file(file, outside) : read_bare_mesh(file, outside);
+    model::Scene scene =
+        extension == ".toml" ? read_scene_file(file, outside) : read_bare_mesh(file, outside);
     try {
         model::check(scene);
     } catch (const core::OptionError& error) {

@@ -89,7 +89,8 @@ auto read_json(std::string_view text, Read read) {
         throw core::FileError("truncated or not a JSON file");
     } catch (const nlohmann::json::exception& error) {
         const std::string what = error.what(); // "[json.exception.out_of_range.403] key 'x' not found"
-        throw core::FileError(fmt::format("not as this program writes it: {}", what.substr(what.find("] ") + 2)));
+        throw core::FileError(
+            fmt::format("not as this program writes it: {}", what.substr(what.find("] ") + 2)));
     }
 }
 
@@ -126,7 +127,8 @@ model::Object object_from(const Json& json) {
     model::Object object;
     object.name = json.at("name");
     object.source = json.at("source");
-    if (const auto motion = optional_from<std::uint32_t>(json.at("motion"))) object.motion = MotionId(*motion);
+    if (const auto motion = optional_from<std::uint32_t>(json.at("motion")))
+        object.motion = MotionId(*motion);
     return object;
 }
 
@@ -184,7 +186,8 @@ void put_settings(Json& json, const model::Scene& scene) {
     json["accuracy"] = {{"target", scene.accuracy.target},
                         {"degree", optional_to_json(scene.accuracy.degree)},
                         {"element_size_m", optional_to_json(scene.accuracy.element_size)}};
-    json["time"] = {{"start_s", scene.time.start_s}, {"end_s", scene.time.end_s}, {"frames", scene.time.frames}};
+    json["time"] = {
+        {"start_s", scene.time.start_s}, {"end_s", scene.time.end_s}, {"frames", scene.time.frames}};
     json["effects"] = {{"interreflection", optional_to_json(scene.effects.interreflection)},
                        {"static_occlusion", optional_to_json(scene.effects.static_occlusion)},
                        {"moving_occlusion", optional_to_json(scene.effects.moving_occlusion)}};
@@ -249,7 +252,8 @@ FileHeader header_from_json(std::string_view text) {
     });
 }
 
-std::string scene_to_json(const FileHeader& header, const model::Scene& scene, const std::vector<MeshFile>& meshes) {
+std::string scene_to_json(const FileHeader& header, const model::Scene& scene,
+                          const std::vector<MeshFile>& meshes) {
     Json json = header_to_json(header);
     put_settings(json, scene);
     json["materials"] = list_to_json(scene.materials, [](const auto& material) { return to_json(material); });

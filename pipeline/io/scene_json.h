@@ -14,7 +14,7 @@ namespace kinelux::io {
 struct FileHeader {
     std::string format;
     std::int64_t version = 0;
-    std::string program;   ///< version of the program that wrote it
+    std::string program;     ///< version of the program that wrote it
     std::string made_from{}; ///< core::file_hash of the predecessor; empty: none
 };
 
@@ -29,7 +29,8 @@ struct MeshFile {
 FileHeader header_from_json(std::string_view text);
 
 /// @param meshes  one per object
-std::string scene_to_json(const FileHeader& header, const model::Scene& scene, const std::vector<MeshFile>& meshes);
+std::string scene_to_json(const FileHeader& header, const model::Scene& scene,
+                          const std::vector<MeshFile>& meshes);
 
 /// A scene without its meshes, and where they are.
 struct SceneFile {

@@ -37,8 +37,10 @@ public:
             ++line_;
             const std::vector<std::string> row = cells(line);
             if (line.starts_with('#') || row.empty() || (row.size() == 1 && row.front().empty())) continue;
-            if (columns_ == 0) read_header(row);
-            else keyframes.push_back(keyframe(row));
+            if (columns_ == 0)
+                read_header(row);
+            else
+                keyframes.push_back(keyframe(row));
             if (keyframes.size() > 1 && !(keyframes.back().time_s > keyframes[keyframes.size() - 2].time_s))
                 fail("time_s does not increase");
         }
@@ -52,10 +54,12 @@ private:
     }
 
     void read_header(const std::vector<std::string>& row) {
-        const std::vector<std::string> names{"time_s", "x", "y", "z", "axis_x", "axis_y", "axis_z", "angle_deg"};
+        const std::vector<std::string> names{"time_s", "x",      "y",      "z",
+                                             "axis_x", "axis_y", "axis_z", "angle_deg"};
         const bool good = (row.size() == 4 || row.size() == names.size()) &&
                           std::equal(row.begin(), row.end(), names.begin());
-        if (!good) fail("expected the column names time_s,x,y,z or time_s,x,y,z,axis_x,axis_y,axis_z,angle_deg");
+        if (!good)
+            fail("expected the column names time_s,x,y,z or time_s,x,y,z,axis_x,axis_y,axis_z,angle_deg");
         columns_ = row.size();
     }
 
@@ -67,7 +71,8 @@ private:
             double value = 0.0;
             const char* end = cell.data() + cell.size();
             const auto [rest, error] = std::from_chars(cell.data(), end, value);
-            if (error != std::errc{} || rest != end || !std::isfinite(value)) fail("'" + cell + "' is not a number");
+            if (error != std::errc{} || rest != end || !std::isfinite(value))
+                fail("'" + cell + "' is not a number");
             values.push_back(value);
         }
         model::Keyframe key;
@@ -96,11 +101,12 @@ void SceneBuilder::add_motions() {
         const int ways = (section->has("csv") ? 1 : 0) + (section->has("gltf_node") ? 1 : 0) +
                          (section->children.empty() ? 0 : 1);
         if (ways != 1)
-            document_.fail(section->line, "motion '" + name +
-                                              "' needs one of: [[motion.keyframe]], 'csv', 'gltf_node'");
+            document_.fail(section->line,
+                           "motion '" + name + "' needs one of: [[motion.keyframe]], 'csv', 'gltf_node'");
         for (const char* key : {"pivot", "interpolation"})
             if (section->has("gltf_node") && section->has(key))
-                document_.fail(section->line_of(key), "'" + std::string(key) + "' of a glTF node comes from its file");
+                document_.fail(section->line_of(key),
+                               "'" + std::string(key) + "' of a glTF node comes from its file");
         MotionEntry entry;
         entry.section = section;
         if (!section->has("gltf_node")) {
@@ -148,8 +154,8 @@ std::vector<model::Keyframe> SceneBuilder::read_csv(const SceneSection& section)
     }
 }
 
-MotionId SceneBuilder::motion_of(const SceneSection& section, const std::string& file, const ImportedMeshes& meshes,
-                                 const Placement& placement) {
+MotionId SceneBuilder::motion_of(const SceneSection& section, const std::string& file,
+                                 const ImportedMeshes& meshes, const Placement& placement) {
     const std::string name = *section.text("motion");
     const auto found = motions_.find(name);
     if (found == motions_.end()) {
@@ -174,12 +180,13 @@ MotionId SceneBuilder::node_motion(MotionEntry& entry, const SceneSection& objec
         std::vector<std::string> known;
         for (const model::Motion& m : meshes.motions) known.push_back(m.name);
         document_.fail(entry.section->line_of("gltf_node"),
-                       "'" + file + "' of object '" + *object.text("name") + "' has no animated node '" + node +
-                           "'; animated are: " + (known.empty() ? "none" : short_list(known)));
+                       "'" + file + "' of object '" + *object.text("name") + "' has no animated node '" +
+                           node + "'; animated are: " + (known.empty() ? "none" : short_list(known)));
     }
     model::Motion own = placed(*motion, placement);
     const std::string name = *entry.section->text("name");
-    own.name = unique_name(entry.from_files.empty() ? name : name + " (" + *object.text("name") + ")", motion_names_);
+    own.name = unique_name(entry.from_files.empty() ? name : name + " (" + *object.text("name") + ")",
+                           motion_names_);
     const MotionId id(scene_.motions.size());
     scene_.motions.push_back(std::move(own));
     entry.from_files.push_back({file, placement, id});

@@ -28,7 +28,8 @@ std::vector<std::uint32_t> welded(const model::Mesh& mesh) {
     std::map<std::array<double, 3>, std::uint32_t> first;
     std::vector<std::uint32_t> result;
     for (const Vec3& p : mesh.points)
-        result.push_back(first.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(result.size())).first->second);
+        result.push_back(
+            first.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(result.size())).first->second);
     return result;
 }
 
@@ -52,7 +53,9 @@ std::vector<std::uint8_t> closed_parts(const model::Mesh& mesh) {
     return result;
 }
 
-std::string names_in(const std::vector<std::string>& names) { return names.empty() ? "none" : short_list(names); }
+std::string names_in(const std::vector<std::string>& names) {
+    return names.empty() ? "none" : short_list(names);
+}
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
     const auto meant = nearest(word, known);
@@ -105,12 +108,14 @@ double emitting_area(const model::Mesh& mesh, const std::vector<model::Material>
 void append(model::Mesh& mesh, const model::Mesh& part) {
     const auto base = static_cast<std::uint32_t>(mesh.points.size());
     mesh.points.insert(mesh.points.end(), part.points.begin(), part.points.end());
-    for (const model::Triangle& t : part.triangles) mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+    for (const model::Triangle& t : part.triangles)
+        mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
     mesh.materials.insert(mesh.materials.end(), part.materials.begin(), part.materials.end());
     mesh.source_faces.insert(mesh.source_faces.end(), part.source_faces.begin(), part.source_faces.end());
 }
 
-SceneBuilder::SceneBuilder(const SceneDocument& document, const FolderTree& tree, double metres, model::Scene& scene)
+SceneBuilder::SceneBuilder(const SceneDocument& document, const FolderTree& tree, double metres,
+                           model::Scene& scene)
     : document_(document), tree_(tree), metres_(metres), scene_(scene) {}
 
 std::filesystem::path SceneBuilder::path_of(const std::string& name) const {
@@ -124,9 +129,10 @@ std::optional<Vec3> SceneBuilder::read_meshes() {
         if (meshes_.count(name) > 0) continue;
         try {
             tree_.require(path_of(name));
-            const ImportedMeshes& read =
-                meshes_[name] = read_mesh_inside(path_of(name), scene_.channels.size(), tree_);
-            for (const std::string& note : read.notes) core::log_info(name + ": " + note);
+            const ImportedMeshes& read = meshes_[name] =
+                read_mesh_inside(path_of(name), scene_.channels.size(), tree_);
+            const std::string prefix = name + ": ";
+            for (const std::string& note : read.notes) core::log_info(prefix + note);
             if (!up && read.up != Vec3(0.0)) up = read.up;
         } catch (const core::FileError& error) {
             throw core::FileError(document_.where(object->line_of("mesh")) + ": " + error.what());
@@ -154,7 +160,9 @@ std::optional<model::Sides> SceneBuilder::sides_of(const SceneSection& section) 
     if (const auto two_sided = section.boolean("two_sided"))
         return *two_sided ? model::Sides::Both : model::Sides::Front;
     if (const auto sides = section.text("sides"))
-        return *sides == "both" ? model::Sides::Both : *sides == "front" ? model::Sides::Front : model::Sides::Auto;
+        return *sides == "both"    ? model::Sides::Both
+               : *sides == "front" ? model::Sides::Front
+                                   : model::Sides::Auto;
     return std::nullopt;
 }
 
@@ -175,7 +183,8 @@ void SceneBuilder::add_materials() {
 Quat SceneBuilder::rotation_of(const SceneSection& section) const {
     const double degrees = section.number("rotation_deg").value_or(0.0);
     const auto axis = section.vec3("rotation_axis");
-    if (degrees != 0.0 && !axis) document_.fail(section.line_of("rotation_deg"), "'rotation_deg' needs 'rotation_axis'");
+    if (degrees != 0.0 && !axis)
+        document_.fail(section.line_of("rotation_deg"), "'rotation_deg' needs 'rotation_axis'");
     if (axis && !(glm::length(*axis) > 0.0))
         document_.fail(section.line_of("rotation_axis"), "'rotation_axis' has no direction");
     if (degrees == 0.0) return {1.0, 0.0, 0.0, 0.0};
@@ -186,12 +195,13 @@ void SceneBuilder::add_objects() {
     const auto sections = document_.all("object");
     if (sections.empty()) document_.fail(1, "the scene has no [[object]]");
     for (const SceneSection* section : sections) add_object(*section);
-    for (const auto& [name, entry] : motions_)
-        if (!entry.used) {
-            std::vector<std::string> objects(object_names_.begin(), object_names_.end());
-            document_.fail(entry.section->line, "motion '" + name + "' moves no object; write motion = \"" + name +
-                                                    "\" in one of: " + short_list(objects));
-        }
+    const auto unused =
+        std::find_if(motions_.begin(), motions_.end(), [](const auto& m) { return !m.second.used; });
+    if (unused == motions_.end()) return;
+    const auto& [name, entry] = *unused;
+    document_.fail(entry.section->line,
+                   "motion '" + name + "' moves no object; write motion = \"" + name +
+                       "\" in one of: " + short_list({object_names_.begin(), object_names_.end()}));
 }
 
 void SceneBuilder::add_object(const SceneSection& section) {
@@ -219,7 +229,8 @@ void SceneBuilder::add_object(const SceneSection& section) {
     scene_.objects.push_back(std::move(object));
 }
 
-std::vector<std::size_t> SceneBuilder::selected(const SceneSection& section, const ImportedMeshes& meshes) const {
+std::vector<std::size_t> SceneBuilder::selected(const SceneSection& section,
+                                                const ImportedMeshes& meshes) const {
     std::vector<std::size_t> chosen;
     std::vector<std::string> names;
     const auto group = section.text("group");
@@ -230,7 +241,8 @@ std::vector<std::size_t> SceneBuilder::selected(const SceneSection& section, con
     }
     if (chosen.empty())
         document_.fail(section.line_of("group"), "'" + *section.text("mesh") + "' has no group '" + *group +
-                                                     "'; it has: " + names_in(names) + suggestion(*group, names));
+                                                     "'; it has: " + names_in(names) +
+                                                     suggestion(*group, names));
     return chosen;
 }
 
@@ -239,7 +251,8 @@ Placement SceneBuilder::placement_of(const SceneSection& section, const Imported
     const Vec3 up = section.has("up_axis") ? axis_vector(*section.text("up_axis")) : meshes.up;
     const Mat3 turn = up == Vec3(0.0) ? Mat3(1.0) : turn_between(up, scene_.up);
     const Quat rotation = rotation_of(section);
-    placement.scale = section.number("scale").value_or(1.0) * (meshes.unit_stated ? meshes.metres_per_unit : metres_);
+    placement.scale =
+        section.number("scale").value_or(1.0) * (meshes.unit_stated ? meshes.metres_per_unit : metres_);
     const Mat3 turned = rotation == Quat(1.0, 0.0, 0.0, 0.0) ? turn : glm::mat3_cast(rotation) * turn;
     placement.linear = placement.scale * turned;
     placement.rotation = glm::normalize(rotation * glm::quat_cast(turn));
@@ -252,7 +265,8 @@ MaterialId SceneBuilder::file_material(const std::string& file, const model::Mat
     const auto stated = materials_.find(material.name);
     if (stated != materials_.end()) return stated->second;
     const auto same = [&](const model::Material& m) {
-        return m.reflectance == material.reflectance && m.exitance == material.exitance && m.sides == material.sides;
+        return m.reflectance == material.reflectance && m.exitance == material.exitance &&
+               m.sides == material.sides;
     };
     const std::string second_name = material.name + " (" + file + ")";
     for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
@@ -260,7 +274,8 @@ MaterialId SceneBuilder::file_material(const std::string& file, const model::Mat
         if ((known.name == material.name || known.name == second_name) && same(known)) return MaterialId(i);
     }
     model::Material added = material;
-    added.name = unique_name(material_names_.count(material.name) > 0 ? second_name : material.name, material_names_);
+    added.name =
+        unique_name(material_names_.count(material.name) > 0 ? second_name : material.name, material_names_);
     scene_.materials.push_back(std::move(added));
     return MaterialId(scene_.materials.size() - 1);
 }
@@ -274,10 +289,12 @@ MaterialId SceneBuilder::named_material(const SceneSection& section, const std::
     for (const auto& [own, id] : materials_) known.push_back(own);
     for (const model::Material& material : meshes.materials) {
         if (material.name == name) return file_material(file, material);
-        if (std::find(known.begin(), known.end(), material.name) == known.end()) known.push_back(material.name);
+        if (std::find(known.begin(), known.end(), material.name) == known.end())
+            known.push_back(material.name);
     }
     document_.fail(section.line_of("material"), "there is no material '" + name + "' here or in '" + file +
-                                                    "'; there are: " + names_in(known) + suggestion(name, known));
+                                                    "'; there are: " + names_in(known) +
+                                                    suggestion(name, known));
 }
 
 // The object's own sides and emission on top of the materials of its faces.
@@ -305,7 +322,8 @@ void SceneBuilder::derive_materials(const SceneSection& section, model::Mesh& me
         const double area = emitting_area(mesh, scene_.materials);
         if (!(area > 0.0)) document_.fail(section.line_of("flux"), "the object has no area to emit from");
         for (double& value : exitance) value /= area;
-        core::log_detail("object '" + *section.text("name") + "': its flux leaves " + std::to_string(area) + " m2");
+        core::log_detail("object '" + *section.text("name") + "': its flux leaves " + std::to_string(area) +
+                         " m2");
     }
     for (const auto& [base, own] : derived) scene_.materials[own.value].exitance = exitance;
 }

@@ -50,11 +50,15 @@ public:
     void add_objects();
 
 private:
-    struct FileMotion { std::string file; Placement placement; MotionId id; };
+    struct FileMotion {
+        std::string file;
+        Placement placement;
+        MotionId id;
+    };
     struct MotionEntry {
         const SceneSection* section = nullptr;
-        std::optional<MotionId> id;             ///< of keyframes, shared by all objects
-        std::vector<FileMotion> from_files;     ///< of a glTF node, one for each place it was put
+        std::optional<MotionId> id;         ///< of keyframes, shared by all objects
+        std::vector<FileMotion> from_files; ///< of a glTF node, one for each place it was put
         bool used = false;
     };
 
@@ -67,7 +71,8 @@ private:
     std::vector<std::size_t> selected(const SceneSection& section, const ImportedMeshes& meshes) const;
     Placement placement_of(const SceneSection& section, const ImportedMeshes& meshes) const;
     MaterialId file_material(const std::string& file, const model::Material& material);
-    MaterialId named_material(const SceneSection& section, const std::string& file, const ImportedMeshes& meshes);
+    MaterialId named_material(const SceneSection& section, const std::string& file,
+                              const ImportedMeshes& meshes);
     void derive_materials(const SceneSection& section, model::Mesh& mesh);
     MotionId motion_of(const SceneSection& section, const std::string& file, const ImportedMeshes& meshes,
                        const Placement& placement);

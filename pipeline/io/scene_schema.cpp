@@ -36,7 +36,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr Range any_number{};
 constexpr Range positive{0.0, infinite, true, true};
 constexpr Range not_negative{0.0, infinite, false, true};
-constexpr Range count_range{1.0, 1e9};
+constexpr Range count_range{1.0, 1e9}; // far below what 32 bits hold
 constexpr Range open_unit{0.0, 1.0, true, true};
 constexpr Range reflectance_range{0.0, 1.0, false, true};
 
@@ -52,7 +52,7 @@ struct KeySchema {
     std::string_view section, key;
     Kind kind;
     Range range;
-    std::string_view choices;  ///< separated by blanks; empty: any
+    std::string_view choices; ///< separated by blanks; empty: any
     std::string_view unit;
     Presence presence;
     std::string_view standard; ///< what an absent key means
@@ -65,7 +65,8 @@ constexpr SectionSchema section_table[] = {
     {"accuracy", false, "The one number that all others follow from."},
     {"time", false, "The frames; frame f is at start_s + f (end_s - start_s) / (frames - 1)."},
     {"material", true,
-     "A diffuse surface. It replaces, whole, the material of the same name in every mesh file; other materials of the "
+     "A diffuse surface. It replaces, whole, the material of the same name in every mesh file; other "
+     "materials of the "
      "mesh files are taken as they are."},
     {"object", true, "A body: one mesh that rests or moves rigidly."},
     {"motion", true, "A rigid path: its keyframes, or a CSV file, or an animated node of a glTF file."},
@@ -82,19 +83,28 @@ constexpr auto required_key = Presence::Required;
 constexpr KeySchema key_table[] = {
     {"", "format", Kind::Integer, any_number, "", "", required_key, "", "version of this format: 1"},
 
-    {"scene", "title", Kind::Text, any_number, "", "", optional_key, "the file's name", "for reports and pictures"},
+    {"scene", "title", Kind::Text, any_number, "", "", optional_key, "the file's name",
+     "for reports and pictures"},
     {"scene", "length_unit", Kind::Text, any_number, "m cm mm in ft", "", optional_key, "m",
      "unit of all lengths in this file and of mesh files that state none"},
-    {"scene", "up_axis", Kind::Text, any_number, "x y z", "", optional_key, "what the mesh files state (glTF: y), else z",
-     "which axis points up; the world is not turned"},
+    {"scene", "up_axis", Kind::Text, any_number, "x y z", "", optional_key,
+     "what the mesh files state (glTF: y), else z", "which axis points up; the world is not turned"},
     {"scene", "quantity", Kind::Text, any_number, "radiometric photometric", "", optional_key, "radiometric",
      "W and W/m2, or lm, lm/m2 and lx"},
     {"scene", "channels", Kind::Texts, any_number, "", "", optional_key, "red, green, blue",
-     "names of the bands that light is computed in; three take the RGB of mesh files, any other number its mean"},
+     "names of the bands that light is computed in; three take the RGB of mesh files, any other number its "
+     "mean"},
 
     {"accuracy", "target", Kind::Fraction, open_unit, "", "1", optional_key, "0.03",
      "relative L2 error of radiosity per frame, 0.03 or \"3%\""},
-    {"accuracy", "degree", Kind::Integer, {0.0, 3.0}, "", "", optional_key, "follows from target",
+    {"accuracy",
+     "degree",
+     Kind::Integer,
+     {0.0, 3.0},
+     "",
+     "",
+     optional_key,
+     "follows from target",
      "degree of the polynomials on patches"},
     {"accuracy", "element_size", Kind::Number, positive, "", "length", optional_key, "follows from target",
      "largest edge of an element"},
@@ -103,31 +113,38 @@ constexpr KeySchema key_table[] = {
     {"time", "end_s", Kind::Number, any_number, "", "s", optional_key, "start_s", "time of the last frame"},
     {"time", "frames", Kind::Integer, count_range, "", "", optional_key, "1", "number of frames"},
 
-    {"material", "name", Kind::Text, any_number, "", "", required_key, "", "what objects and mesh files call it"},
+    {"material", "name", Kind::Text, any_number, "", "", required_key, "",
+     "what objects and mesh files call it"},
     {"material", "reflectance", Kind::Numbers, reflectance_range, "", "1", required_key, "",
      "share of light reflected, one number or one per channel"},
     {"material", "exitance", Kind::Numbers, not_negative, "", "W/m2 or lm/m2", optional_key, "0",
      "light emitted per area, one number or one per channel"},
     {"material", "sides", Kind::Text, any_number, "auto front both", "", optional_key, "auto",
      "which sides exchange light; auto: the outside of closed parts, both sides of sheets"},
-    {"material", "two_sided", Kind::Boolean, any_number, "", "", optional_key, "", "true: sides = both, false: front"},
+    {"material", "two_sided", Kind::Boolean, any_number, "", "", optional_key, "",
+     "true: sides = both, false: front"},
 
     {"object", "name", Kind::Text, any_number, "", "", required_key, "", "for reports, meters and pictures"},
-    {"object", "mesh", Kind::Text, any_number, "", "path", required_key, "", "mesh file, relative to this file"},
+    {"object", "mesh", Kind::Text, any_number, "", "path", required_key, "",
+     "mesh file, relative to this file"},
     {"object", "group", Kind::Text, any_number, "", "", optional_key, "the whole file",
      "OBJ group or object, or node with all nodes below it, that is taken from the file"},
     {"object", "material", Kind::Text, any_number, "", "", optional_key, "those of the mesh file",
      "material of all its faces, from this file or the mesh file"},
-    {"object", "exitance", Kind::Numbers, not_negative, "", "W/m2 or lm/m2", optional_key, "that of its materials",
-     "light emitted per area by all its faces, one number or one per channel"},
+    {"object", "exitance", Kind::Numbers, not_negative, "", "W/m2 or lm/m2", optional_key,
+     "that of its materials", "light emitted per area by all its faces, one number or one per channel"},
     {"object", "flux", Kind::Numbers, not_negative, "", "W or lm", optional_key, "",
-     "instead of exitance: light emitted in all, in each channel; divided by the area that emits (both sides of "
+     "instead of exitance: light emitted in all, in each channel; divided by the area that emits (both sides "
+     "of "
      "two-sided faces)"},
     {"object", "sides", Kind::Text, any_number, "auto front both", "", optional_key, "that of its materials",
      "as in [[material]]"},
-    {"object", "two_sided", Kind::Boolean, any_number, "", "", optional_key, "", "true: sides = both, false: front"},
-    {"object", "motion", Kind::Text, any_number, "", "", optional_key, "rests", "name of the motion it follows"},
-    {"object", "scale", Kind::Number, positive, "", "1", optional_key, "1", "factor on the mesh file's coordinates"},
+    {"object", "two_sided", Kind::Boolean, any_number, "", "", optional_key, "",
+     "true: sides = both, false: front"},
+    {"object", "motion", Kind::Text, any_number, "", "", optional_key, "rests",
+     "name of the motion it follows"},
+    {"object", "scale", Kind::Number, positive, "", "1", optional_key, "1",
+     "factor on the mesh file's coordinates"},
     {"object", "rotation_axis", Kind::Vector, any_number, "", "1", optional_key, "", "axis of rotation_deg"},
     {"object", "rotation_deg", Kind::Number, any_number, "", "degrees", optional_key, "0",
      "turn at rest about the origin, after scale"},
@@ -136,7 +153,8 @@ constexpr KeySchema key_table[] = {
     {"object", "up_axis", Kind::Text, any_number, "x y z", "", optional_key, "what the mesh file states",
      "up axis of the mesh file; where it differs from the scene's, the mesh is turned"},
 
-    {"motion", "name", Kind::Text, any_number, "", "", required_key, "", "what objects call it; some object must"},
+    {"motion", "name", Kind::Text, any_number, "", "", required_key, "",
+     "what objects call it; some object must"},
     {"motion", "interpolation", Kind::Text, any_number, "step linear cubic", "", optional_key, "linear",
      "of translations (cubic: Catmull-Rom); rotations by slerp, or in steps"},
     {"motion", "pivot", Kind::Vector, any_number, "", "length", optional_key, "[0, 0, 0]",
@@ -149,15 +167,19 @@ constexpr KeySchema key_table[] = {
     {"motion.keyframe", "time_s", Kind::Number, any_number, "", "s", required_key, "", "when"},
     {"motion.keyframe", "translation", Kind::Vector, any_number, "", "length", optional_key, "[0, 0, 0]",
      "shift from the place at rest"},
-    {"motion.keyframe", "rotation_axis", Kind::Vector, any_number, "", "1", optional_key, "", "axis of rotation_deg"},
+    {"motion.keyframe", "rotation_axis", Kind::Vector, any_number, "", "1", optional_key, "",
+     "axis of rotation_deg"},
     {"motion.keyframe", "rotation_deg", Kind::Number, any_number, "", "degrees", optional_key, "0",
      "turn about the pivot; less than 180 degrees from one keyframe to the next"},
 
     {"meter", "name", Kind::Text, any_number, "", "", required_key, "", "its name in meters.csv"},
-    {"meter", "origin", Kind::Vector, any_number, "", "length", required_key, "", "a corner of the rectangle"},
+    {"meter", "origin", Kind::Vector, any_number, "", "length", required_key, "",
+     "a corner of the rectangle"},
     {"meter", "edge_u", Kind::Vector, any_number, "", "length", required_key, "", "edge from that corner"},
-    {"meter", "edge_v", Kind::Vector, any_number, "", "length", required_key, "", "other edge from that corner"},
-    {"meter", "count_u", Kind::Integer, count_range, "", "", optional_key, "1", "sensors along edge_u, at cell centres"},
+    {"meter", "edge_v", Kind::Vector, any_number, "", "length", required_key, "",
+     "other edge from that corner"},
+    {"meter", "count_u", Kind::Integer, count_range, "", "", optional_key, "1",
+     "sensors along edge_u, at cell centres"},
     {"meter", "count_v", Kind::Integer, count_range, "", "", optional_key, "1", "sensors along edge_v"},
 
     {"effects", "interreflection", Kind::Boolean, any_number, "", "", optional_key, "the plan decides",
@@ -167,15 +189,25 @@ constexpr KeySchema key_table[] = {
     {"effects", "moving_occlusion", Kind::Boolean, any_number, "", "", optional_key, "the plan decides",
      "false: bodies that move cast no shadow"},
 
-    {"view", "eye", Kind::Vector, any_number, "", "length", optional_key, "outside the scene", "where the camera is"},
-    {"view", "target", Kind::Vector, any_number, "", "length", optional_key, "the scene's middle", "what it looks at"},
+    {"view", "eye", Kind::Vector, any_number, "", "length", optional_key, "outside the scene",
+     "where the camera is"},
+    {"view", "target", Kind::Vector, any_number, "", "length", optional_key, "the scene's middle",
+     "what it looks at"},
     {"view", "up", Kind::Vector, any_number, "", "1", optional_key, "up_axis", "what is up in the picture"},
-    {"view", "field_of_view_deg", Kind::Number, {0.0, 180.0, true, true}, "", "degrees", optional_key, "45",
+    {"view",
+     "field_of_view_deg",
+     Kind::Number,
+     {0.0, 180.0, true, true},
+     "",
+     "degrees",
+     optional_key,
+     "45",
      "vertical angle of view"},
 
     {"export", "cell_size", Kind::Number, positive, "", "length", optional_key, "follows from the elements",
      "largest edge of a displayed cell"},
-    {"export", "frames", Kind::Integers, not_negative, "", "", optional_key, "all", "numbers of the frames written"},
+    {"export", "frames", Kind::Integers, not_negative, "", "", optional_key, "all",
+     "numbers of the frames written"},
 };
 
 std::string printed(double value) {
@@ -185,7 +217,8 @@ std::string printed(double value) {
 }
 
 std::string range_text(const Range& range) {
-    const bool below = std::isfinite(range.low), above = std::isfinite(range.high);
+    const bool below = std::isfinite(range.low),
+               above = std::isfinite(range.high) && range.high < count_range.high;
     if (!below && !above) return {};
     if (!above) return (range.low_open ? "> " : ">= ") + printed(range.low);
     return (range.low_open ? "in (" : "in [") + printed(range.low) + ", " + printed(range.high) +
@@ -206,14 +239,19 @@ std::string quoted_list(const std::vector<std::string>& items) {
 }
 
 std::string type_text(const KeySchema& key) {
-    const char* const names[] = {"true or false",          "whole number",  "number", "number or \"n%\"",
-                                 "number or list of them", "list of whole numbers", "text",   "list of texts",
+    const char* const names[] = {"true or false",
+                                 "whole number",
+                                 "number",
+                                 "number or \"n%\"",
+                                 "number or list of them",
+                                 "list of whole numbers",
+                                 "text",
+                                 "list of texts",
                                  "[x, y, z]"};
-    std::string text = key.choices.empty() ? names[static_cast<std::size_t>(key.kind)]
-                                           : quoted_list(words(key.choices));
-    const bool has_range = key.kind != Kind::Integer || key.range.high < count_range.high;
-    if (has_range && !range_text(key.range).empty()) text += " " + range_text(key.range);
-    return text;
+    std::string text =
+        key.choices.empty() ? names[static_cast<std::size_t>(key.kind)] : quoted_list(words(key.choices));
+    const std::string range = range_text(key.range);
+    return range.empty() ? text : text + " " + range;
 }
 
 std::string section_label(std::string_view name, bool is_list) {
@@ -228,9 +266,10 @@ const SectionSchema* find_section(const std::string& name) {
 }
 
 const KeySchema* find_key(const std::string& section, const std::string& key) {
-    const auto* found = std::find_if(std::begin(key_table), std::end(key_table), [&](const KeySchema& candidate) {
-        return candidate.section == section && candidate.key == key;
-    });
+    const auto* found =
+        std::find_if(std::begin(key_table), std::end(key_table), [&](const KeySchema& candidate) {
+            return candidate.section == section && candidate.key == key;
+        });
     return found == std::end(key_table) ? nullptr : found;
 }
 
@@ -251,25 +290,32 @@ private:
         const toml::node* format = root.get("format");
         if (format == nullptr) document_.fail(1, "expected 'format = 1' at the top of the file");
         const auto version = format->value<std::int64_t>();
-        if (!format->is_integer() || *version < 1) document_.fail(line_of_node(*format), "expected 'format = 1'");
+        if (!format->is_integer() || *version < 1)
+            document_.fail(line_of_node(*format), "expected 'format = 1'");
         if (*version > newest_format)
             document_.fail(line_of_node(*format), "the file is of format " + std::to_string(*version) +
-                                                      ", this program reads up to " + std::to_string(newest_format) +
+                                                      ", this program reads up to " +
+                                                      std::to_string(newest_format) +
                                                       "; use a newer version of it");
     }
 
     SceneSection section(const std::string& name, const toml::table& table, int line) {
         SceneSection result{name, line, {}, {}};
+        const std::string prefix = name.empty() ? "" : name + ".";
         for (const auto& [toml_key, node] : table) {
             const std::string key(toml_key.str());
-            const std::string inner = name.empty() ? key : name + "." + key;
+            const std::string inner = prefix + key;
             const int key_line = line_of_node(node) > 0 ? line_of_node(node) : line;
-            if (const SectionSchema* schema = find_section(inner)) read_inner(*schema, node, key_line, result);
-            else if (const KeySchema* known = find_key(name, key)) result.values[key] = value(*known, node, key_line);
-            else refuse_unknown(name, key, key_line);
+            if (const SectionSchema* schema = find_section(inner))
+                read_inner(*schema, node, key_line, result);
+            else if (const KeySchema* known = find_key(name, key))
+                result.values[key] = value(*known, node, key_line);
+            else
+                refuse_unknown(name, key, key_line);
         }
         for (const KeySchema& key : key_table)
-            if (key.section == name && key.presence == Presence::Required && !result.has(std::string(key.key)))
+            if (key.section == name && key.presence == Presence::Required &&
+                !result.has(std::string(key.key)))
                 document_.fail(line, label(name) + " lacks the key '" + std::string(key.key) + "'");
         return result;
     }
@@ -302,9 +348,12 @@ private:
             if (candidate.section == section) known.emplace_back(candidate.key);
         for (const SectionSchema& candidate : section_table)
             if (section.empty() && !candidate.name.empty()) known.emplace_back(candidate.name);
-        std::string text = "unknown key '" + key + "' in " + (section.empty() ? label(section) : "[" + section + "]");
-        if (const auto meant = nearest(key, known)) text += "; did you mean '" + *meant + "'?";
-        else text += "; known are: " + quoted_list(known);
+        std::string text =
+            "unknown key '" + key + "' in " + (section.empty() ? label(section) : "[" + section + "]");
+        if (const auto meant = nearest(key, known))
+            text += "; did you mean '" + *meant + "'?";
+        else
+            text += "; known are: " + quoted_list(known);
         document_.fail(line, text);
     }
 
@@ -317,7 +366,8 @@ private:
             const double result = *item.value<double>();
             if (!std::isfinite(result) || !key.range.contains(result)) {
                 const std::string range = range_text(key.range);
-                document_.fail(line, name + ": " + printed(result) + " is not " + (range.empty() ? "finite" : range));
+                document_.fail(line, name + ": " + printed(result) + " is not " +
+                                         (range.empty() ? "finite" : range));
             }
             return result;
         };
@@ -331,7 +381,8 @@ private:
             return {line, *node.value<bool>()};
         case Kind::Integer:
         case Kind::Number: return {line, number(node)};
-        case Kind::Fraction: return {line, node.is_string() ? percent(key, *node.value<std::string>(), line) : number(node)};
+        case Kind::Fraction:
+            return {line, node.is_string() ? percent(key, *node.value<std::string>(), line) : number(node)};
         case Kind::Text: return {line, choice(key, texts_of(node), line)};
         case Kind::Texts: return {line, list<std::string>(node, texts_of, expected)};
         case Kind::Numbers:
@@ -366,7 +417,8 @@ private:
         const char* end = text.data() + text.size();
         const auto [rest, error] = std::from_chars(text.data(), end, value);
         const std::string tail(rest, end);
-        const bool good = error == std::errc{} && (tail == "%" || tail == " %") && key.range.contains(value / 100.0);
+        const bool good =
+            error == std::errc{} && (tail == "%" || tail == " %") && key.range.contains(value / 100.0);
         if (!good) document_.fail(line, "'" + std::string(key.key) + "': expected " + type_text(key));
         return value / 100.0;
     }
@@ -436,7 +488,8 @@ std::optional<Vec3> SceneSection::vec3(const std::string& key) const {
 
 const SceneSection& SceneDocument::one(const std::string& name) const {
     static const SceneSection absent;
-    const auto found = std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.name == name; });
+    const auto found =
+        std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.name == name; });
     return found == sections.end() ? absent : *found;
 }
 
@@ -449,7 +502,9 @@ std::vector<const SceneSection*> SceneDocument::all(const std::string& name) con
 
 std::string SceneDocument::where(int line) const { return file.string() + ":" + std::to_string(line); }
 
-void SceneDocument::fail(int line, const std::string& what) const { throw core::OptionError(where(line) + ": " + what); }
+void SceneDocument::fail(int line, const std::string& what) const {
+    throw core::OptionError(where(line) + ": " + what);
+}
 
 SceneDocument parse_scene_document(const std::string& text, const std::filesystem::path& file) {
     SceneDocument document{file, {}};
@@ -466,13 +521,16 @@ std::string scene_format_table() {
     std::string text;
     for (const SectionSchema& section : section_table) {
         const std::string name(section.name);
-        text += "### " + (name.empty() ? std::string("Top of the file") : "`" + section_label(name, section.is_list) + "`");
-        text += "\n\n" + std::string(section.help) + "\n\n| key | type | unit | default | meaning |\n|---|---|---|---|---|\n";
+        text += "### " + (name.empty() ? std::string("Top of the file")
+                                       : "`" + section_label(name, section.is_list) + "`");
+        text += "\n\n" + std::string(section.help) +
+                "\n\n| key | type | unit | default | meaning |\n|---|---|---|---|---|\n";
         for (const KeySchema& key : key_table) {
             if (key.section != section.name) continue;
-            const std::string standard = key.presence == Presence::Required ? "required" : std::string(key.standard);
-            for (const std::string& cell : {"`" + std::string(key.key) + "`", type_text(key), std::string(key.unit),
-                                            standard, std::string(key.help)})
+            const std::string standard =
+                key.presence == Presence::Required ? "required" : std::string(key.standard);
+            for (const std::string& cell : {"`" + std::string(key.key) + "`", type_text(key),
+                                            std::string(key.unit), standard, std::string(key.help)})
                 text += "| " + cell + (cell.empty() ? "" : " ");
             text += "|\n";
         }

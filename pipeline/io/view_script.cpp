@@ -18,22 +18,32 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a camera that looks along `direction` sees of the faces: the area whose front it sees, and the area that is
-/// hidden because only fronts are drawn, both projected [m2].
+/// What a camera that looks along a direction sees of the faces: the area whose front it sees, and the area near the
+/// camera that is hidden because only fronts are drawn, both projected [m2].
 struct Prospect {
     double shown = 0.0, hidden = 0.0;
 };
 
-Prospect prospect(const model::Scene& scene, const Vec3& direction) {
+Prospect prospect(const model::Scene& scene, const ViewScriptOptions& options, const Vec3& direction) {
+    // The back of a block inside the room is no wall between the camera and the room: only the near part counts.
+    constexpr double near_share = 0.2;
+    const Vec3 centre = 0.5 * (options.low + options.high);
+    const double depth = glm::dot(options.high - options.low, glm::abs(direction));
+    const double nearest = glm::dot(centre, direction) - 0.5 * depth;
     Prospect result;
     for (const model::Object& object : scene.objects) {
         const model::Mesh& mesh = object.mesh;
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             const auto& [a, b, c] = mesh.triangles[t];
-            const Vec3 normal = 0.5 * glm::cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
+            const Vec3 normal =
+                0.5 * glm::cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
             const double facing = -glm::dot(normal, direction);
+            const Vec3 middle = (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3.0;
             const bool both = t < mesh.two_sided.size() && mesh.two_sided[t] != 0;
-            (facing > 0.0 || both ? result.shown : result.hidden) += std::abs(facing);
+            if (facing > 0.0 || both)
+                result.shown += std::abs(facing);
+            else if (glm::dot(middle, direction) < nearest + near_share * depth)
+                result.hidden -= facing;
         }
     }
     return result;
@@ -61,15 +71,16 @@ double box_front(const ViewScriptOptions& options, const Vec3& right, const Vec3
 /// from there. Everything else is looked at from above and aside: only fronts are drawn, so that the walls between camera
 /// and room vanish.
 Vec3 direction_to_eye(const model::Scene& scene, const ViewScriptOptions& options, const Vec3& up) {
-    constexpr double open_share = 0.05; // hidden area, relative to what is shown, that still counts as an open side
-    constexpr double wall_share = 0.5;  // of the box's front that a wall opposite fills
+    constexpr double open_share =
+        0.05; // hidden area, relative to what is shown, that still counts as an open side
+    constexpr double wall_share = 0.5; // of the box's front that a wall opposite fills
     constexpr double aside_rad = 0.5, above_rad = 0.5;
     const auto [side, forward] = horizontal_axes(up);
     Vec3 best = forward;
     double best_score = std::numeric_limits<double>::lowest();
     bool open = false;
     for (const Vec3& direction : {forward, -forward, side, -side}) {
-        const auto [shown, hidden] = prospect(scene, direction);
+        const auto [shown, hidden] = prospect(scene, options, direction);
         const double front = box_front(options, glm::cross(direction, up), up);
         // Rounding must not decide between sides that are alike: the first one wins.
         const double score = std::round(1e6 * (shown - 0.5 * hidden) / std::max(front, 1e-300));
@@ -125,7 +136,7 @@ import json
 import os
 import sys
 
-import paraview
+import paraview.simple
 from paraview.simple import *
 
 FROM_GUI = getattr(paraview, 'fromGUI', False)
@@ -296,6 +307,8 @@ def new_view(size):
 
 
 def main():
+    # ParaView would move the camera at the first picture.
+    getattr(paraview.simple, '_DisableFirstRenderCameraReset', lambda: None)()
     options = arguments()
     size = [int(length) for length in options.size.lower().split('x')]
     source = PVDReader(registrationName='view.pvd', FileName=os.path.join(case_folder(), 'view.pvd'))

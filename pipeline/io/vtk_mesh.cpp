@@ -39,21 +39,30 @@ namespace {
 template <class Value>
 struct VtkArrayOf;
 template <>
-struct VtkArrayOf<float> { using Type = vtkFloatArray; };
+struct VtkArrayOf<float> {
+    using Type = vtkFloatArray;
+};
 template <>
-struct VtkArrayOf<double> { using Type = vtkDoubleArray; };
+struct VtkArrayOf<double> {
+    using Type = vtkDoubleArray;
+};
 template <>
-struct VtkArrayOf<std::int32_t> { using Type = vtkIntArray; };
+struct VtkArrayOf<std::int32_t> {
+    using Type = vtkIntArray;
+};
 template <>
-struct VtkArrayOf<std::uint32_t> { using Type = vtkUnsignedIntArray; };
+struct VtkArrayOf<std::uint32_t> {
+    using Type = vtkUnsignedIntArray;
+};
 template <>
-struct VtkArrayOf<std::uint8_t> { using Type = vtkUnsignedCharArray; };
+struct VtkArrayOf<std::uint8_t> {
+    using Type = vtkUnsignedCharArray;
+};
 
 /// Keeps what VTK would print, so that a damaged file gives one line of ours instead of a page of VTK's.
 class QuietWindow : public vtkOutputWindow {
 public:
-    vtkTypeMacro(QuietWindow, vtkOutputWindow)
-    static QuietWindow* New();
+    vtkTypeMacro(QuietWindow, vtkOutputWindow) static QuietWindow* New();
     void DisplayText(const char* /*text*/) override { ++messages_; } // NOLINT: VTK's name
     int messages() const { return messages_; }
 
@@ -62,15 +71,16 @@ private:
 };
 vtkStandardNewMacro(QuietWindow)
 
-/// While it lives, VTK's errors and warnings are counted instead of printed.
-class CapturedErrors {
+    /// While it lives, VTK's errors and warnings are counted instead of printed.
+    class CapturedErrors {
 public:
     CapturedErrors() : previous_(vtkOutputWindow::GetInstance()) {
         vtkOutputWindow::SetInstance(window_);
         vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
     }
     ~CapturedErrors() {
-        vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_INFO); // VTK's default; there is no way to ask what it was
+        vtkLogger::SetStderrVerbosity(
+            vtkLogger::VERBOSITY_INFO); // VTK's default; there is no way to ask what it was
         vtkOutputWindow::SetInstance(previous_);
     }
     CapturedErrors(const CapturedErrors&) = delete;
@@ -107,7 +117,7 @@ vtkSmartPointer<vtkPoints> make_points(std::span<const Vec3> points, PointPrecis
         values->SetNumberOfComponents(3);
         constexpr int keep = 1;
         values->SetArray(const_cast<double*>(points.empty() ? nullptr : &points.front().x),
-                         static_cast<vtkIdType>(3 * points.size()), keep);
+                         static_cast<vtkIdType>(points.size()) * 3, keep);
         result->SetData(values);
         return result.Get();
     }
@@ -122,8 +132,8 @@ vtkSmartPointer<vtkPoints> make_points(std::span<const Vec3> points, PointPrecis
 /// 32-bit indices: half the bytes of VTK's default.
 vtkSmartPointer<vtkCellArray> make_cells(std::span<const model::Triangle> triangles) {
     vtkNew<vtkTypeInt32Array> offsets, corners;
-    offsets->SetNumberOfValues(static_cast<vtkIdType>(triangles.size() + 1));
-    corners->SetNumberOfValues(static_cast<vtkIdType>(3 * triangles.size()));
+    offsets->SetNumberOfValues(static_cast<vtkIdType>(triangles.size()) + 1);
+    corners->SetNumberOfValues(static_cast<vtkIdType>(triangles.size()) * 3);
     vtkTypeInt32* corner = corners->GetPointer(0);
     for (const model::Triangle& triangle : triangles)
         for (const std::uint32_t index : triangle) *corner++ = static_cast<vtkTypeInt32>(index);
@@ -175,7 +185,8 @@ void require_whole(const std::filesystem::path& file) {
     std::string tail(static_cast<std::size_t>(std::min<std::streamoff>(size, 16)), '\0');
     in.seekg(size - static_cast<std::streamoff>(tail.size()));
     in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
-    if (!in || tail.find(closing) == std::string::npos) throw damaged(file, "truncated or not a VTK XML file");
+    if (!in || tail.find(closing) == std::string::npos)
+        throw damaged(file, "truncated or not a VTK XML file");
 }
 
 template <class Reader>
@@ -222,7 +233,8 @@ VtkValues<Value> read_array(const std::filesystem::path& file, vtkDataSetAttribu
     VtkValues<Value> result;
     result.components = static_cast<std::uint32_t>(array->GetNumberOfComponents());
     for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-        result.component_names.emplace_back(array->GetComponentName(c) == nullptr ? "" : array->GetComponentName(c));
+        result.component_names.emplace_back(
+            array->GetComponentName(c) == nullptr ? "" : array->GetComponentName(c));
     result.values.reserve(static_cast<std::size_t>(array->GetNumberOfValues()));
     for (vtkIdType item = 0; item < array->GetNumberOfTuples(); ++item)
         for (int c = 0; c < array->GetNumberOfComponents(); ++c)

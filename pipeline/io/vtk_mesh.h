@@ -34,7 +34,8 @@ struct VtkTriangles {
     PointPrecision precision = PointPrecision::Double;
     std::vector<VtkArray> point_arrays{}, cell_arrays{};
     std::optional<double> time_s{}; ///< written as TimeValue
-    std::vector<std::pair<std::string, std::vector<std::string>>> names{}; ///< lists of names, kept as field data
+    std::vector<std::pair<std::string, std::vector<std::string>>>
+        names{}; ///< lists of names, kept as field data
 };
 
 /// Writes VTK XML (.vtp: poly data, .vtu: unstructured grid) aside and renames it. Inline binary with zlib: ParaView

@@ -37,34 +37,38 @@ VtkArray vtk_array(const model::NamedArray& array) {
 }
 
 const model::NamedArray* find_array(const std::vector<model::NamedArray>& arrays, const std::string& name) {
-    const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.name == name; });
+    const auto found =
+        std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.name == name; });
     return found == arrays.end() ? nullptr : &*found;
 }
 
 double channel_mean(const model::NamedArray& array, std::size_t item) {
     double sum = 0.0;
-    for (std::uint32_t c = 0; c < array.components; ++c) sum += static_cast<double>(array.values[item * array.components + c]);
+    for (std::uint32_t c = 0; c < array.components; ++c)
+        sum += static_cast<double>(array.values[item * array.components + c]);
     return sum / array.components;
 }
 
 /// Area mean of a point field over triangles that emit, or over those that do not.
-double mean_over(const model::DisplayMesh& mesh, const std::vector<Vec3>& points, const model::NamedArray& array,
-                 const model::Scene& scene, bool emitting) {
+double mean_over(const model::DisplayMesh& mesh, const std::vector<Vec3>& points,
+                 const model::NamedArray& array, const model::Scene& scene, bool emitting) {
     double sum = 0.0, area = 0.0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (scene.materials.at(mesh.materials[t].value).emits() != emitting) continue;
         const auto& [a, b, c] = mesh.triangles[t];
-        const double triangle_area = 0.5 * glm::length(glm::cross(points[b] - points[a], points[c] - points[a]));
+        const double triangle_area =
+            0.5 * glm::length(glm::cross(points[b] - points[a], points[c] - points[a]));
         area += triangle_area;
-        sum += triangle_area * (channel_mean(array, a) + channel_mean(array, b) + channel_mean(array, c)) / 3.0;
+        sum +=
+            triangle_area * (channel_mean(array, a) + channel_mean(array, b) + channel_mean(array, c)) / 3.0;
     }
     return area > 0.0 ? sum / area : 0.0;
 }
 
 /// Exposure that shows the mean radiosity of the surfaces that do not emit as mean_shown; where nothing is lit, that of
 /// the lamps as 1.
-double exposure_for(const model::DisplayMesh& mesh, const std::vector<Vec3>& points, const model::NamedArray& radiosity,
-                    const model::Scene& scene) {
+double exposure_for(const model::DisplayMesh& mesh, const std::vector<Vec3>& points,
+                    const model::NamedArray& radiosity, const model::Scene& scene) {
     const double lit = mean_over(mesh, points, radiosity, scene, false);
     if (lit > 0.0) return mean_shown / lit;
     const double lamps = mean_over(mesh, points, radiosity, scene, true);
@@ -111,7 +115,8 @@ double high_value(const model::NamedArray& array) {
     std::vector<double> values(array.values.size() / std::max(array.components, 1u));
     if (values.empty()) return 0.0;
     for (std::size_t p = 0; p < values.size(); ++p) values[p] = channel_mean(array, p);
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(map_quantile * static_cast<double>(values.size() - 1));
+    const auto place =
+        values.begin() + static_cast<std::ptrdiff_t>(map_quantile * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), place, values.end());
     return *place;
 }
@@ -160,7 +165,10 @@ std::string csv_text(const std::string& text) {
 } // namespace
 
 ViewWriter::ViewWriter(fs::path folder, const model::DisplayMesh& mesh, const model::Scene& scene)
-    : folder_(std::move(folder)), mesh_(mesh), scene_(scene), low_(std::numeric_limits<double>::max()),
+    : folder_(std::move(folder)),
+      mesh_(mesh),
+      scene_(scene),
+      low_(std::numeric_limits<double>::max()),
       high_(std::numeric_limits<double>::lowest()) {
     std::error_code failed;
     fs::create_directories(folder_ / "frames", failed);
@@ -172,17 +180,19 @@ ViewWriter::ViewWriter(fs::path folder, const model::DisplayMesh& mesh, const mo
 void ViewWriter::write_frame(std::uint32_t frame, const model::SurfaceFields& fields) {
     const std::string radiosity_name = array_name("Radiosity", model::radiosity_unit(scene_.quantity));
     const std::string irradiance_name = array_name("Irradiance", model::irradiance_unit(scene_.quantity));
-    VtkTriangles view{.points = fields.points,
-                      .triangles = mesh_.triangles,
-                      .precision = PointPrecision::Single,
-                      .time_s = fields.time_s,
-                      .names = {{"ObjectNames", object_names(scene_)}, {"MaterialNames", material_names(scene_)}}};
+    VtkTriangles view{
+        .points = fields.points,
+        .triangles = mesh_.triangles,
+        .precision = PointPrecision::Single,
+        .time_s = fields.time_s,
+        .names = {{"ObjectNames", object_names(scene_)}, {"MaterialNames", material_names(scene_)}}};
     for (const auto& array : fields.point_arrays) view.point_arrays.push_back(vtk_array(array));
 
     std::vector<float> normals;
     if (find_array(fields.point_arrays, "Normals") == nullptr) {
         normals = moved_normals(mesh_, scene_, fields.time_s);
-        view.point_arrays.push_back({.name = "Normals", .components = 3, .values = std::span<const float>(normals)});
+        view.point_arrays.push_back(
+            {.name = "Normals", .components = 3, .values = std::span<const float>(normals)});
     }
     std::vector<std::uint8_t> colour;
     const auto* radiosity = find_array(fields.point_arrays, radiosity_name);
@@ -211,16 +221,18 @@ void ViewWriter::write_frame(std::uint32_t frame, const model::SurfaceFields& fi
 }
 
 void ViewWriter::finish() {
-    std::stable_sort(written_.begin(), written_.end(), [](const Written& a, const Written& b) { return a.time_s < b.time_s; });
-    std::string xml = "<?xml version=\"1.0\"?>\n"
-                      "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+    std::stable_sort(written_.begin(), written_.end(),
+                     [](const Written& a, const Written& b) { return a.time_s < b.time_s; });
+    std::string xml =
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
     for (const Written& frame : written_)
-        xml += fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", frame.time_s, frame.file);
-    core::write_whole_file(folder_ / "view.py",
-                           view_script(scene_, {.low = low_,
-                                                .high = high_,
-                                                .irradiance_high = irradiance_high_,
-                                                .exposure = exposure_}));
+        xml += fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", frame.time_s,
+                           frame.file);
+    core::write_whole_file(folder_ / "view.py", view_script(scene_, {.low = low_,
+                                                                     .high = high_,
+                                                                     .irradiance_high = irradiance_high_,
+                                                                     .exposure = exposure_}));
     core::write_whole_file(folder_ / "view.pvd", xml + "  </Collection>\n</VTKFile>\n");
 }
 
@@ -228,8 +240,9 @@ void write_meters(const fs::path& file, std::span<const model::MeterReading> rea
     // {} of fmt is the shortest decimal that reads back as the same double.
     std::string text = "frame,time_s,meter,quantity,channel,value,unit,error_estimate\n";
     for (const auto& r : readings)
-        text += fmt::format("{},{},{},{},{},{},{},{}\n", r.frame, r.time_s, csv_text(r.meter), csv_text(r.quantity),
-                            csv_text(r.channel), r.value, csv_text(r.unit), r.error_estimate);
+        text += fmt::format("{},{},{},{},{},{},{},{}\n", r.frame, r.time_s, csv_text(r.meter),
+                            csv_text(r.quantity), csv_text(r.channel), r.value, csv_text(r.unit),
+                            r.error_estimate);
     core::write_whole_file(file, text);
 }
 

@@ -396,7 +396,7 @@ TransportBlock transport(const ElementShape& a, const ElementShape& b, const vis
     const std::size_t na = a.basis.size(), nb = b.basis.size();
     block.values.assign(na * nb, 0.0);
     double rule_error = near_rule_error;
-    if (eta >= limits.far_eta && sight.sight() == Sight::Clear) {
+    if (eta >= limits.far_eta) {
         add_node_product(a, a.nodes, b, b.nodes, sight, block.values);
         rule_error = far_rule_error;
     } else if (eta >= limits.near_eta) {
@@ -418,8 +418,8 @@ TransportBlock transport(const ElementShape& a, const ElementShape& b, const vis
         block.values.clear();
         return block;
     }
-    // The share that V cuts off is sampled: its standard error with as many samples as nodes seen along one element.
-    const double samples = static_cast<double>(std::max(a.fine_nodes.nodes.size(), b.fine_nodes.nodes.size()));
+    // The share that V cuts off is sampled by the rays between all nodes of the rule used.
+    const double samples = static_cast<double>(std::max(1u, sight.rays()));
     const double share = sight.visible_share();
     const double sight_error =
         sight.sight() == Sight::Partial ? std::sqrt(std::max(share * (1.0 - share), 0.05) / samples) : 0.0;

@@ -14,7 +14,8 @@ namespace {
 
 void check_layout(const UnknownLayout& layout) {
     if (layout.offsets.empty()) return;
-    if (layout.offsets.front() != 0) throw core::GeometryError("coefficients: the first element starts not at unknown 0");
+    if (layout.offsets.front() != 0)
+        throw core::GeometryError("coefficients: the first element starts not at unknown 0");
     for (std::size_t element = 0; element < layout.elements(); ++element)
         if (layout.offsets[element + 1] < layout.offsets[element])
             throw core::GeometryError(fmt::format("coefficients: element {} ends before it starts", element));
@@ -22,19 +23,20 @@ void check_layout(const UnknownLayout& layout) {
 
 void check_pair(const std::string& what, ElementPair pair, std::size_t elements) {
     if (pair.i > pair.j || pair.j >= elements)
-        throw core::GeometryError(fmt::format("coefficients: {} ({}, {}) is no pair i <= j of the {} elements", what,
-                                              pair.i, pair.j, elements));
+        throw core::GeometryError(
+            fmt::format("coefficients: {} ({}, {}) is no pair i <= j of the {} elements", what, pair.i,
+                        pair.j, elements));
 }
 
 void check_entry(const BlockEntry& entry, const UnknownLayout& layout, std::size_t value_count) {
     check_pair("block", {entry.i, entry.j}, layout.elements());
     const std::size_t size = layout.count(entry.i) * layout.count(entry.j);
     if (entry.offset > value_count || size > value_count - entry.offset)
-        throw core::GeometryError(fmt::format("coefficients: block ({}, {}) ends beyond the {} stored values", entry.i,
-                                              entry.j, value_count));
+        throw core::GeometryError(fmt::format("coefficients: block ({}, {}) ends beyond the {} stored values",
+                                              entry.i, entry.j, value_count));
     if (!std::isfinite(entry.error))
-        throw core::GeometryError(
-            fmt::format("coefficients: the error of block ({}, {}) is not a finite number", entry.i, entry.j));
+        throw core::GeometryError(fmt::format(
+            "coefficients: the error of block ({}, {}) is not a finite number", entry.i, entry.j));
 }
 
 void check_order(const std::vector<BlockEntry>& entries) {
@@ -42,9 +44,9 @@ void check_order(const std::vector<BlockEntry>& entries) {
         const ElementPair before{entries[k - 1].i, entries[k - 1].j};
         const ElementPair here{entries[k].i, entries[k].j};
         if (!(before < here))
-            throw core::GeometryError(
-                fmt::format("coefficients: block ({}, {}) follows block ({}, {}); blocks are sorted, each pair once",
-                            here.i, here.j, before.i, before.j));
+            throw core::GeometryError(fmt::format(
+                "coefficients: block ({}, {}) follows block ({}, {}); blocks are sorted, each pair once",
+                here.i, here.j, before.i, before.j));
     }
 }
 

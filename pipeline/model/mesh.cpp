@@ -24,7 +24,8 @@ Vec3 doubled_area_vector(const Mesh& mesh, const Triangle& triangle) {
 
 double area(const Mesh& mesh) {
     double sum = 0.0;
-    for (const Triangle& triangle : mesh.triangles) sum += 0.5 * glm::length(doubled_area_vector(mesh, triangle));
+    for (const Triangle& triangle : mesh.triangles)
+        sum += 0.5 * glm::length(doubled_area_vector(mesh, triangle));
     return sum;
 }
 
@@ -49,11 +50,13 @@ void check(const Mesh& mesh, const std::string& where) {
     const std::size_t count = mesh.triangles.size();
     const auto matches = [&](std::size_t size) { return size == 0 || size == count; };
     if (mesh.materials.size() != count)
-        fail(std::to_string(count) + " triangles but " + std::to_string(mesh.materials.size()) + " materials");
+        fail(std::to_string(count) + " triangles but " + std::to_string(mesh.materials.size()) +
+             " materials");
     if (!matches(mesh.two_sided.size()) || !matches(mesh.source_faces.size()))
         fail("the lists kept per triangle differ in length");
     for (std::size_t i = 0; i < mesh.points.size(); ++i)
-        if (!is_finite(mesh.points[i])) fail("vertex " + std::to_string(i) + " has a coordinate that is not finite");
+        if (!is_finite(mesh.points[i]))
+            fail("vertex " + std::to_string(i) + " has a coordinate that is not finite");
     for (std::size_t t = 0; t < count; ++t)
         for (const std::uint32_t corner : mesh.triangles[t])
             if (corner >= mesh.points.size())

@@ -25,8 +25,8 @@ void check_material(const Material& material, std::size_t channels) {
     const std::string where = "material '" + material.name + "'";
     const auto expect_size = [&](const std::vector<double>& values, const char* what) {
         if (values.size() != channels)
-            refuse(where, std::string(what) + " has " + std::to_string(values.size()) + " values, the scene has " +
-                              std::to_string(channels) + " channels");
+            refuse(where, std::string(what) + " has " + std::to_string(values.size()) +
+                              " values, the scene has " + std::to_string(channels) + " channels");
     };
     expect_size(material.reflectance, "reflectance");
     expect_size(material.exitance, "exitance");
@@ -45,7 +45,8 @@ void check_motion(const Motion& motion) {
     for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
         const Keyframe& key = motion.keyframes[k];
         const std::string which = "keyframe " + std::to_string(k + 1);
-        if (!std::isfinite(key.time_s) || !is_finite(key.translation)) refuse(where, which + " is not finite");
+        if (!std::isfinite(key.time_s) || !is_finite(key.translation))
+            refuse(where, which + " is not finite");
         if (!(std::abs(glm::length(key.rotation) - 1.0) <= unit_tolerance))
             refuse(where, which + " has a rotation that is not a unit quaternion");
         if (k > 0 && !(key.time_s > motion.keyframes[k - 1].time_s))
@@ -77,10 +78,12 @@ void check_meter(const GridMeter& meter) {
 
 void check_settings(const Scene& scene) {
     if (scene.channels.empty()) refuse("scene", "has no channels");
-    if (!is_finite(scene.up) || !(glm::length(scene.up) > 0.0)) refuse("scene", "its up direction is zero or not finite");
+    if (!is_finite(scene.up) || !(glm::length(scene.up) > 0.0))
+        refuse("scene", "its up direction is zero or not finite");
     const Accuracy& accuracy = scene.accuracy;
     if (!(accuracy.target > 0.0 && accuracy.target < 1.0)) refuse("accuracy", "target is not in (0, 1)");
-    if (accuracy.degree && (*accuracy.degree < 0 || *accuracy.degree > 3)) refuse("accuracy", "degree is not in 0..3");
+    if (accuracy.degree && (*accuracy.degree < 0 || *accuracy.degree > 3))
+        refuse("accuracy", "degree is not in 0..3");
     if (accuracy.element_size && !(*accuracy.element_size > 0.0 && std::isfinite(*accuracy.element_size)))
         refuse("accuracy", "element_size is not above 0");
     const TimeAxis& time = scene.time;

@@ -16,9 +16,9 @@ struct Sums {
 
     void add(const SensorReading& reading, const std::vector<double>& values) {
         if (values.size() != reading.irradiance.size())
-            throw core::GeometryError("a sensor point has " + std::to_string(values.size()) +
-                                      " values but the reference has " + std::to_string(reading.irradiance.size()) +
-                                      " channels; compare results of the same scene");
+            throw core::GeometryError(
+                "a sensor point has " + std::to_string(values.size()) + " values but the reference has " +
+                std::to_string(reading.irradiance.size()) + " channels; compare results of the same scene");
         for (std::size_t c = 0; c < values.size(); ++c) {
             const double d = values[c] - reading.irradiance[c];
             difference += d;
@@ -55,8 +55,7 @@ Comparison comparison_of(const Sums& sums) {
 Comparison compare(std::span<const SensorReading> reference, std::span<const std::vector<double>> values) {
     require_same_size(reference.size(), values.size());
     Sums sums;
-    for (std::size_t i = 0; i < reference.size(); ++i)
-        sums.add(reference[i], values[i]);
+    for (std::size_t i = 0; i < reference.size(); ++i) sums.add(reference[i], values[i]);
     Comparison result = comparison_of(sums);
     result.points = reference.size();
     return result;

@@ -54,8 +54,7 @@ Barycentric nearest_point(const Vec3& x, const std::array<Vec3, 3>& corners) {
     if (area2 > 0.0) {
         const double b1 = glm::dot(glm::cross(d, e2), cross) / area2;
         const double b2 = glm::dot(glm::cross(e1, d), cross) / area2;
-        if (b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0)
-            return {1.0 - b1 - b2, b1, b2};
+        if (b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0) return {1.0 - b1 - b2, b1, b2};
     }
     Barycentric best{};
     double best2 = std::numeric_limits<double>::infinity();
@@ -82,11 +81,12 @@ public:
             const double length = glm::length(cross);
             normals_.push_back(length > 0.0 ? cross / length : Vec3(0.0));
         }
-        if (!order_.empty())
-            build(0, order_.size());
+        if (!order_.empty()) build(0, order_.size());
     }
 
-    double extent() const { return nodes_.empty() ? 0.0 : glm::length(nodes_[0].box.high - nodes_[0].box.low); }
+    double extent() const {
+        return nodes_.empty() ? 0.0 : glm::length(nodes_[0].box.high - nodes_[0].box.low);
+    }
 
     struct Found {
         std::uint32_t triangle = 0;
@@ -97,13 +97,11 @@ public:
         std::optional<Found> best;
         double limit = reach * reach;
         std::vector<std::uint32_t> open;
-        if (!nodes_.empty())
-            open.push_back(0);
+        if (!nodes_.empty()) open.push_back(0);
         while (!open.empty()) {
             const Node& node = nodes_[open.back()];
             open.pop_back();
-            if (node.box.squared_distance(sensor.position) > limit)
-                continue;
+            if (node.box.squared_distance(sensor.position) > limit) continue;
             if (node.children[0] != 0) {
                 const bool swap = nodes_[node.children[0]].box.squared_distance(sensor.position) <
                                   nodes_[node.children[1]].box.squared_distance(sensor.position);
@@ -112,7 +110,8 @@ public:
                 continue;
             }
             for (std::size_t i = node.first; i < node.last; ++i)
-                if (const auto found = fit(order_[i], sensor, min_cosine); found && found->squared_distance <= limit) {
+                if (const auto found = fit(order_[i], sensor, min_cosine);
+                    found && found->squared_distance <= limit) {
                     // Of equally near ones the first in the file counts.
                     if (!best || found->squared_distance < limit || found->triangle < best->triangle)
                         best = found;
@@ -149,21 +148,20 @@ private:
         nodes_.emplace_back();
         Box box, centres;
         for (std::size_t i = first; i < last; ++i) {
-            for (const Vec3& corner : corners(order_[i]))
-                box.add(corner);
+            for (const Vec3& corner : corners(order_[i])) box.add(corner);
             centres.add(centroids_[order_[i]]);
         }
         nodes_[index].box = box;
         nodes_[index].first = first;
         nodes_[index].last = last;
-        if (last - first <= leaf_size)
-            return index;
+        if (last - first <= leaf_size) return index;
         const Vec3 size = centres.high - centres.low;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const std::size_t middle = (first + last) / 2;
         std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(first),
                          order_.begin() + static_cast<std::ptrdiff_t>(middle),
-                         order_.begin() + static_cast<std::ptrdiff_t>(last), [&](std::uint32_t a, std::uint32_t b) {
+                         order_.begin() + static_cast<std::ptrdiff_t>(last),
+                         [&](std::uint32_t a, std::uint32_t b) {
                              return std::pair(centroids_[a][axis], a) < std::pair(centroids_[b][axis], b);
                          });
         const std::uint32_t left = build(first, middle);
@@ -185,27 +183,28 @@ void require_fitting(const ExportedField& field) {
     for (const model::Triangle& triangle : field.triangles)
         for (const std::uint32_t corner : triangle)
             if (corner >= field.points.size())
-                throw core::GeometryError("the exported field has a triangle whose corner does not exist: export the "
-                                          "frame again");
+                throw core::GeometryError(
+                    "the exported field has a triangle whose corner does not exist: export the "
+                    "frame again");
 }
 
 } // namespace
 
-std::vector<std::optional<std::vector<double>>> values_at(const ExportedField& field,
-                                                          std::span<const SensorPoint> sensors,
-                                                          const MatchOptions& options) {
+std::vector<std::optional<std::vector<double>>>
+values_at(const ExportedField& field, std::span<const SensorPoint> sensors, const MatchOptions& options) {
     require_fitting(field);
     const TriangleTree tree(field);
     std::vector<std::optional<std::vector<double>>> values(sensors.size());
     core::parallel_for(sensors.size(), [&](std::size_t i) {
         const auto found = tree.nearest(sensors[i], options.tolerance * tree.extent(), options.min_cosine);
-        if (!found)
-            return;
+        if (!found) return;
         std::vector<double> value(field.components, 0.0);
         for (std::size_t corner = 0; corner < 3; ++corner)
             for (std::size_t c = 0; c < field.components; ++c)
-                value[c] += found->barycentric[corner] *
-                            static_cast<double>(field.values[field.triangles[found->triangle][corner] * field.components + c]);
+                value[c] +=
+                    found->barycentric[corner] *
+                    static_cast<double>(
+                        field.values[field.triangles[found->triangle][corner] * field.components + c]);
         values[i] = std::move(value);
     });
     return values;

@@ -24,8 +24,8 @@ namespace {
 
 using visibility::Occluders;
 
-constexpr std::uint32_t batches = 16;      ///< independent scrambles per point; their spread is the standard error
-constexpr std::uint32_t first_round = 4;   ///< paths per batch before the error is looked at
+constexpr std::uint32_t batches = 16; ///< independent scrambles per point; their spread is the standard error
+constexpr std::uint32_t first_round = 4; ///< paths per batch before the error is looked at
 
 enum Stream : std::uint64_t { LightStream, BounceStream, RouletteStream, StreamCount };
 
@@ -39,10 +39,10 @@ public:
     Lights(const World& world, const model::Scene& scene) {
         for (const WorldTriangle& triangle : world.triangles) {
             const double exitance = largest(scene.materials[triangle.material.value].exitance);
-            if (!(exitance > 0.0) || !(triangle.area > 0.0))
-                continue;
+            if (!(exitance > 0.0) || !(triangle.area > 0.0)) continue;
             faces_.push_back(&triangle);
-            cumulative_.push_back((cumulative_.empty() ? 0.0 : cumulative_.back()) + triangle.area * exitance);
+            cumulative_.push_back((cumulative_.empty() ? 0.0 : cumulative_.back()) +
+                                  triangle.area * exitance);
         }
     }
 
@@ -60,7 +60,9 @@ public:
         return {faces_[i], faces_[i]->point(square)};
     }
     /// Density per area of a point on a face with this exitance [1/m2].
-    double density(const std::vector<double>& exitance) const { return largest(exitance) / cumulative_.back(); }
+    double density(const std::vector<double>& exitance) const {
+        return largest(exitance) / cumulative_.back();
+    }
 
 private:
     std::vector<const WorldTriangle*> faces_;
@@ -79,8 +81,7 @@ double exchange(const Vertex& from, const Vec3& to, const WorldTriangle& face) {
     const double r2 = glm::dot(way, way);
     const double here = glm::dot(way, from.normal);
     const double there = face.both_sides ? std::abs(glm::dot(way, face.normal)) : -glm::dot(way, face.normal);
-    if (!(here > 0.0) || !(there > 0.0) || !(r2 > 0.0))
-        return 0.0;
+    if (!(here > 0.0) || !(there > 0.0) || !(r2 > 0.0)) return 0.0;
     return here * there / (std::numbers::pi * r2 * r2);
 }
 
@@ -94,8 +95,11 @@ Vec3 cosine_direction(const Vec3& normal, const Vec2& square) {
 
 class Tracer {
 public:
-    Tracer(const model::Scene& scene, double time_s) :
-        scene_(scene), world_(scene, time_s), lights_(world_, scene), occluders_(visibility::bodies_of(scene)) {
+    Tracer(const model::Scene& scene, double time_s)
+        : scene_(scene),
+          world_(scene, time_s),
+          lights_(world_, scene),
+          occluders_(visibility::bodies_of(scene)) {
         occluders_.set_poses(geometry::object_poses(scene, time_s));
     }
 
@@ -124,8 +128,7 @@ private:
 void Tracer::add_light(const Vertex& vertex, std::uint32_t bounce, Path& path) const {
     const Lights::Draw light = lights_.draw(sample(path, bounce, LightStream));
     const double g = exchange(vertex, light.position, *light.face);
-    if (!(g > 0.0) || occluders_.occluded(vertex.position, light.position))
-        return;
+    if (!(g > 0.0) || occluders_.occluded(vertex.position, light.position)) return;
     const std::vector<double>& exitance = scene_.materials[light.face->material.value].exitance;
     const double weight = g / (lights_.density(exitance) + g);
     for (std::size_t c = 0; c < path.irradiance.size(); ++c)
@@ -136,12 +139,10 @@ void Tracer::add_light(const Vertex& vertex, std::uint32_t bounce, Path& path) c
 bool Tracer::bounce(Vertex& vertex, std::uint32_t bounce, Path& path) const {
     const Vec3 direction = cosine_direction(vertex.normal, sample(path, bounce, BounceStream));
     const auto hit = occluders_.first_hit(vertex.position, direction);
-    if (!hit)
-        return false;
+    if (!hit) return false;
     const WorldTriangle& face = world_.at(hit->body, hit->triangle);
     const bool front = glm::dot(hit->normal, direction) < 0.0;
-    if (!front && !face.both_sides)
-        return false;
+    if (!front && !face.both_sides) return false;
     const model::Material& material = scene_.materials[face.material.value];
     if (material.emits()) {
         const double g = exchange(vertex, hit->position, face);
@@ -150,8 +151,7 @@ bool Tracer::bounce(Vertex& vertex, std::uint32_t bounce, Path& path) const {
             path.irradiance[c] += path.throughput[c] * material.exitance[c] * weight;
     }
     const double survival = largest(material.reflectance);
-    if (!(sample(path, bounce, RouletteStream).x < survival))
-        return false;
+    if (!(sample(path, bounce, RouletteStream).x < survival)) return false;
     for (std::size_t c = 0; c < path.throughput.size(); ++c)
         path.throughput[c] *= material.reflectance[c] / survival;
     vertex = {hit->position, front ? hit->normal : -hit->normal};
@@ -161,8 +161,7 @@ bool Tracer::bounce(Vertex& vertex, std::uint32_t bounce, Path& path) const {
 void Tracer::trace(Vertex vertex, Path& path) const {
     for (std::uint32_t b = 0;; ++b) {
         add_light(vertex, b, path);
-        if (!bounce(vertex, b, path))
-            return;
+        if (!bounce(vertex, b, path)) return;
     }
 }
 
@@ -173,8 +172,7 @@ SensorReading reading_of(const std::vector<std::vector<double>>& sums, std::uint
     SensorReading reading{std::vector<double>(channels, 0.0), std::vector<double>(channels, 0.0)};
     for (std::size_t c = 0; c < channels; ++c) {
         double mean = 0.0, squares = 0.0;
-        for (const std::vector<double>& sum : sums)
-            mean += sum[c] / paths_per_batch;
+        for (const std::vector<double>& sum : sums) mean += sum[c] / paths_per_batch;
         mean /= n;
         for (const std::vector<double>& sum : sums)
             squares += (sum[c] / paths_per_batch - mean) * (sum[c] / paths_per_batch - mean);
@@ -191,13 +189,13 @@ bool good_enough(const SensorReading& reading, double target) {
     return true;
 }
 
-SensorReading Tracer::read(const SensorPoint& point, std::uint64_t seed, const ReferenceOptions& options) const {
+SensorReading Tracer::read(const SensorPoint& point, std::uint64_t seed,
+                           const ReferenceOptions& options) const {
     const std::size_t channels = scene_.channels.size();
     const std::uint32_t used_batches = std::clamp(options.paths, 2u, batches);
     const std::uint32_t all = std::max(1u, (options.paths + used_batches - 1) / used_batches);
     std::vector<std::vector<double>> sums(used_batches, std::vector<double>(channels, 0.0));
-    if (lights_.empty())
-        return reading_of(sums, all);
+    if (lights_.empty()) return reading_of(sums, all);
     std::uint32_t done = 0;
     for (std::uint32_t goal = options.target_error > 0.0 ? std::min(first_round, all) : all;;
          goal = std::min(2 * goal, all)) {
@@ -210,15 +208,15 @@ SensorReading Tracer::read(const SensorPoint& point, std::uint64_t seed, const R
         }
         done = goal;
         const SensorReading reading = reading_of(sums, done);
-        if (done == all || good_enough(reading, options.target_error))
-            return reading;
+        if (done == all || good_enough(reading, options.target_error)) return reading;
     }
 }
 
 } // namespace
 
 std::vector<SensorReading> trace_irradiance(const model::Scene& scene, double time_s,
-                                            std::span<const SensorPoint> points, const ReferenceOptions& options) {
+                                            std::span<const SensorPoint> points,
+                                            const ReferenceOptions& options) {
     const Tracer tracer(scene, time_s);
     std::vector<SensorReading> readings(points.size());
     core::Progress progress("tracing the reference", points.size());

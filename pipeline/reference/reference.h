@@ -13,10 +13,10 @@
 namespace kinelux::reference {
 
 struct ReferenceOptions {
-    std::uint32_t paths = 1024;   ///< per point, 4..1e6
+    std::uint32_t paths = 1024; ///< per point, 4..1e6
     std::uint64_t seed = 1;
-    double target_error = 0.0;    ///< stop a point at this relative standard error [1]; 0: always all paths.
-                                  ///< Stopping by the sample's own error biases it slightly: judge with 0
+    double target_error = 0.0; ///< stop a point at this relative standard error [1]; 0: always all paths.
+                               ///< Stopping by the sample's own error biases it slightly: judge with 0
 };
 
 /// A point of the scene's own triangles in world position at the time asked for.
@@ -43,16 +43,17 @@ std::vector<SensorPoint> sensor_points(const model::Scene& scene, double time_s,
 /// vertex, cosine-distributed bounces, Russian roulette by reflectance. Independent of patches, bases and blocks.
 /// Same bytes at any thread count.
 std::vector<SensorReading> trace_irradiance(const model::Scene& scene, double time_s,
-                                            std::span<const SensorPoint> points, const ReferenceOptions& options);
+                                            std::span<const SensorPoint> points,
+                                            const ReferenceOptions& options);
 
 /// How far values at the sensor points are from the reference.
 struct Comparison {
-    double relative_rms = 0.0;  ///< RMS difference / RMS of the reference, all points and channels [1]
+    double relative_rms = 0.0;     ///< RMS difference / RMS of the reference, all points and channels [1]
     double relative_to_mean = 0.0; ///< RMS difference / mean of the reference [1]
     double reference_noise = 0.0;  ///< RMS standard error / RMS of the reference [1]
-    double bias = 0.0;          ///< mean difference / mean of the reference [1]
-    std::uint64_t points = 0;   ///< compared
-    std::uint64_t unmatched = 0; ///< without a value; they count nowhere else
+    double bias = 0.0;             ///< mean difference / mean of the reference [1]
+    std::uint64_t points = 0;      ///< compared
+    std::uint64_t unmatched = 0;   ///< without a value; they count nowhere else
 };
 /// @param values  one per sensor point, each with one value per channel
 /// @throws GeometryError  sizes that do not fit

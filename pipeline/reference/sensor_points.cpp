@@ -9,7 +9,8 @@ namespace kinelux::reference {
 
 namespace {
 
-constexpr double shrink = 1e-4; ///< towards the centroid: no sensor on an edge, where the side of a wall is ambiguous
+constexpr double shrink =
+    1e-4; ///< towards the centroid: no sensor on an edge, where the side of a wall is ambiguous
 
 enum Stream : std::uint64_t { OffsetStream, PlaceStream, SideStream };
 
@@ -29,11 +30,9 @@ std::vector<SensorPoint> sensor_points(const model::Scene& scene, double time_s,
     const World world(scene, time_s);
     double total = 0.0;
     for (const WorldTriangle& triangle : world.triangles)
-        if (!scene.materials[triangle.material.value].emits())
-            total += triangle.area;
+        if (!scene.materials[triangle.material.value].emits()) total += triangle.area;
     std::vector<SensorPoint> points;
-    if (!(total > 0.0) || count == 0)
-        return points;
+    if (!(total > 0.0) || count == 0) return points;
 
     // Systematic sampling: equal steps along the area laid end to end, with one random offset for all.
     points.reserve(count);
@@ -41,8 +40,7 @@ std::vector<SensorPoint> sensor_points(const model::Scene& scene, double time_s,
     const double step = total / count;
     double before = 0.0;
     for (const WorldTriangle& triangle : world.triangles) {
-        if (scene.materials[triangle.material.value].emits())
-            continue;
+        if (scene.materials[triangle.material.value].emits()) continue;
         before += triangle.area;
         while (points.size() < count && (static_cast<double>(points.size()) + offset) * step < before)
             points.push_back(sensor_on(triangle, static_cast<std::uint32_t>(points.size()), seed));

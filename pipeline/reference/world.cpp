@@ -11,8 +11,7 @@ namespace {
 
 // A mesh that was never cleaned has no flags yet: then only a material that says so has a black back.
 bool both_sides_of(const model::Mesh& mesh, std::size_t triangle, const model::Material& material) {
-    if (!mesh.two_sided.empty())
-        return mesh.two_sided[triangle] != 0;
+    if (!mesh.two_sided.empty()) return mesh.two_sided[triangle] != 0;
     return material.sides != model::Sides::Front;
 }
 
@@ -35,8 +34,7 @@ World::World(const model::Scene& scene, double time_s) {
             triangle.edge2 = poses[o].point(mesh.points[mesh.triangles[t][2]]) - triangle.corner;
             const Vec3 cross = glm::cross(triangle.edge1, triangle.edge2);
             triangle.area = 0.5 * glm::length(cross);
-            if (triangle.area > 0.0)
-                triangle.normal = cross / (2.0 * triangle.area);
+            if (triangle.area > 0.0) triangle.normal = cross / (2.0 * triangle.area);
             triangle.object = ObjectId(o);
             triangle.triangle = static_cast<std::uint32_t>(t);
             triangle.material = mesh.materials[t];

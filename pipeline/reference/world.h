@@ -16,9 +16,9 @@ struct WorldTriangle {
     Vec3 normal{0.0};                         ///< unit, to the front; (0,0,0) without area
     double area = 0.0;                        ///< [m2]
     ObjectId object;
-    std::uint32_t triangle = 0;               ///< of the object's mesh
+    std::uint32_t triangle = 0; ///< of the object's mesh
     MaterialId material;
-    bool both_sides = false;                  ///< the back reflects and emits as the front does
+    bool both_sides = false; ///< the back reflects and emits as the front does
 
     /// The point at the image of the unit square under the area-preserving map to the triangle.
     Vec3 point(const Vec2& square) const;

@@ -25,17 +25,17 @@ double flux(const System& system, std::span<const double> x) {
     return sum;
 }
 
-// r = M + rho G b - b.
-std::vector<double> residual_of(const System& system, std::span<const double> radiosity) {
+// r = M + rho E - B, with the irradiance E = G B.
+std::vector<double> residual_of(const System& system, std::span<const double> radiosity,
+                                std::span<const double> irradiance) {
     const auto& layout = system.transport.layout();
     std::vector<double> residual(radiosity.size());
-    apply(system.transport, system.channels, radiosity, residual);
     for (std::size_t i = 0; i < layout.elements(); ++i)
         for (std::size_t u = layout.offsets[i]; u < layout.offsets[i + 1]; ++u)
             for (std::size_t c = 0; c < system.channels; ++c) {
-                double& r = residual[u * system.channels + c];
                 const std::size_t k = u * system.channels + c;
-                r = system.exitance[k] + system.reflectance[i * system.channels + c] * r - radiosity[k];
+                residual[k] =
+                    system.exitance[k] + system.reflectance[i * system.channels + c] * irradiance[k] - radiosity[k];
             }
     return residual;
 }
@@ -61,15 +61,17 @@ double sweep(const System& system, std::vector<double>& radiosity) {
 }
 
 void gauss_seidel(const System& system, const SolveOptions& options, double scale, SystemSolution& solution) {
-    std::vector<double> residual = residual_of(system, solution.radiosity);
-    while (norm(residual) > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
-        // The change of a sweep is about the residual before it; the exact residual is checked once it looks small.
-        double change = 0.0;
-        do {
+    // The change of a sweep is about the residual before it; the exact residual is computed once it looks small.
+    while (true) {
+        apply(system.transport, system.channels, solution.radiosity, solution.irradiance);
+        const double residual = norm(residual_of(system, solution.radiosity, solution.irradiance));
+        if (residual <= options.tolerance * scale || solution.sweeps >= options.max_sweeps)
+            return;
+        double change = residual;
+        while (change > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
             change = sweep(system, solution.radiosity);
             ++solution.sweeps;
-        } while (change > options.tolerance * scale && solution.sweeps < options.max_sweeps);
-        residual = residual_of(system, solution.radiosity);
+        }
     }
 }
 
@@ -77,7 +79,7 @@ void gauss_seidel(const System& system, const SolveOptions& options, double scal
 void shoot(const System& system, const SolveOptions& options, double scale, SystemSolution& solution) {
     const auto& layout = system.transport.layout();
     const std::size_t channels = system.channels;
-    std::vector<double> unshot = residual_of(system, solution.radiosity);
+    std::vector<double> unshot(system.exitance.begin(), system.exitance.end());
     std::vector<double> arriving(unshot.size());
     const std::size_t max_shots = std::size_t{options.max_sweeps} * layout.elements();
     std::size_t shots = 0;
@@ -106,6 +108,7 @@ void shoot(const System& system, const SolveOptions& options, double scale, Syst
         ++shots;
     }
     solution.sweeps = static_cast<std::uint32_t>((shots + layout.elements() - 1) / layout.elements());
+    apply(system.transport, channels, solution.radiosity, solution.irradiance);
 }
 
 } // namespace
@@ -114,6 +117,7 @@ SystemSolution solve_system(const System& system, const SolveOptions& options, s
     SystemSolution solution;
     const double scale = norm(system.exitance);
     solution.radiosity.assign(system.exitance.size(), 0.0);
+    solution.irradiance.assign(system.exitance.size(), 0.0);
     if (!(scale > 0.0))
         return solution;
     if (options.method == Method::Shooting) {
@@ -123,7 +127,7 @@ SystemSolution solve_system(const System& system, const SolveOptions& options, s
         solution.radiosity.assign(from.begin(), from.end());
         gauss_seidel(system, options, scale, solution);
     }
-    const std::vector<double> residual = residual_of(system, solution.radiosity);
+    const std::vector<double> residual = residual_of(system, solution.radiosity, solution.irradiance);
     solution.residual = norm(residual) / scale;
     solution.unshot = flux(system, residual) / flux(system, system.exitance);
     solution.converged = solution.residual <= 1.01 * options.tolerance;

@@ -32,7 +32,8 @@ struct System {
 };
 
 struct SystemSolution {
-    std::vector<double> radiosity; ///< unknowns x channels
+    std::vector<double> radiosity;  ///< B, unknowns x channels
+    std::vector<double> irradiance; ///< G B, unknowns x channels
     std::uint32_t sweeps = 0;
     double residual = 0.0;         ///< ||M + rho G B - B|| / ||M|| [1], recomputed exactly at the end
     double unshot = 0.0;           ///< flux still unshot (norm 1 of the residual's constant parts) / flux emitted [1]
@@ -59,6 +60,7 @@ public:
 
 private:
     std::vector<double> extrapolated() const;
+    std::vector<double> emitted_irradiance(const TransportOperator& transport) const;
 
     std::size_t channels_;
     std::vector<double> exitance_, reflectance_, areas_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -24,6 +25,18 @@ std::vector<double> TemporalSolver::extrapolated() const {
     return start;
 }
 
+// G M, element by element that emits: they are few.
+std::vector<double> TemporalSolver::emitted_irradiance(const TransportOperator& transport) const {
+    const auto& layout = transport.layout();
+    std::vector<double> irradiance(exitance_.size());
+    for (std::size_t i = 0; i < layout.elements(); ++i) {
+        const auto own = std::span(exitance_).subspan(layout.offsets[i] * channels_, layout.count(i) * channels_);
+        if (std::any_of(own.begin(), own.end(), [](double value) { return value != 0.0; }))
+            transport.scatter(i, channels_, own, irradiance);
+    }
+    return irradiance;
+}
+
 model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transport) {
     const System system{transport, channels_, exitance_, reflectance_, areas_};
     SystemSolution solved = solve_system(system, options_, extrapolated());
@@ -33,10 +46,8 @@ model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transp
     frame.residual = solved.residual;
     frame.unshot = solved.unshot;
     frame.converged = solved.converged;
-    frame.irradiance_direct.resize(exitance_.size());
-    apply(transport, channels_, exitance_, frame.irradiance_direct);
-    frame.irradiance_indirect.resize(exitance_.size());
-    apply(transport, channels_, solved.radiosity, frame.irradiance_indirect);
+    frame.irradiance_direct = emitted_irradiance(transport);
+    frame.irradiance_indirect = std::move(solved.irradiance);
     for (std::size_t k = 0; k < exitance_.size(); ++k)
         frame.irradiance_indirect[k] -= frame.irradiance_direct[k];
     frame.radiosity = solved.radiosity;

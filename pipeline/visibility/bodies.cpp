@@ -29,17 +29,14 @@ double extent_of(const model::PatchSet& patches) {
         high = glm::max(high, x);
     };
     for (const model::Patch& patch : patches.patches)
-        for (const Vec2& uv : patch.points)
-            add(point_of(patch.surface, uv));
-    for (const Vec3& x : patches.small.points)
-        add(x);
+        for (const Vec2& uv : patch.points) add(point_of(patch.surface, uv));
+    for (const Vec3& x : patches.small.points) add(x);
     return low.x <= high.x ? glm::length(high - low) : 0.0;
 }
 
 // Into how many parts each edge of the patch's triangles is cut so that all chords are within `sag` of the surface.
 std::uint32_t parts_of(const model::Patch& patch, double sag) {
-    if (patch.surface.type == model::SurfaceType::Plane || !(sag > 0.0))
-        return 1;
+    if (patch.surface.type == model::SurfaceType::Plane || !(sag > 0.0)) return 1;
     double largest = 0.0;
     for (const model::Triangle& triangle : patch.triangles)
         for (std::size_t c = 0; c < 3; ++c) {
@@ -60,8 +57,7 @@ void add_patch(Body& body, const model::Patch& patch, double sag) {
     };
     if (parts == 1) {
         const auto first = static_cast<std::uint32_t>(body.points.size());
-        for (const Vec2& uv : patch.points)
-            body.points.push_back(point_of(patch.surface, uv));
+        for (const Vec2& uv : patch.points) body.points.push_back(point_of(patch.surface, uv));
         for (const model::Triangle& t : patch.triangles)
             add_triangle(first + t[0], first + t[1], first + t[2]);
         return;
@@ -79,16 +75,14 @@ void add_patch(Body& body, const model::Patch& patch, double sag) {
         for (std::uint32_t row = 0; row < parts; ++row)
             for (std::uint32_t i = 0; i <= row; ++i) {
                 add_triangle(at(row, i), at(row + 1, i), at(row + 1, i + 1));
-                if (i < row)
-                    add_triangle(at(row, i), at(row + 1, i + 1), at(row, i + 1));
+                if (i < row) add_triangle(at(row, i), at(row + 1, i + 1), at(row, i + 1));
             }
     }
 }
 
 std::vector<Body> empty_bodies(const model::Scene& scene) {
     std::vector<Body> bodies(scene.objects.size());
-    for (std::size_t o = 0; o < bodies.size(); ++o)
-        bodies[o].moves = scene.objects[o].motion.has_value();
+    for (std::size_t o = 0; o < bodies.size(); ++o) bodies[o].moves = scene.objects[o].motion.has_value();
     return bodies;
 }
 
@@ -97,8 +91,7 @@ std::vector<Body> empty_bodies(const model::Scene& scene) {
 std::vector<Body> bodies_of(const model::PatchSet& patches, const model::Scene& scene) {
     std::vector<Body> bodies = empty_bodies(scene);
     const double sag = relative_sag * extent_of(patches);
-    for (const model::Patch& patch : patches.patches)
-        add_patch(bodies[patch.object.value], patch, sag);
+    for (const model::Patch& patch : patches.patches) add_patch(bodies[patch.object.value], patch, sag);
 
     const model::SmallTriangles& small = patches.small;
     std::vector<std::unordered_map<std::uint32_t, std::uint32_t>> renumbered(bodies.size());
@@ -108,8 +101,7 @@ std::vector<Body> bodies_of(const model::PatchSet& patches, const model::Scene& 
         for (std::size_t c = 0; c < 3; ++c) {
             const auto [entry, added] = renumbered[object].try_emplace(
                 small.triangles[t][c], static_cast<std::uint32_t>(bodies[object].points.size()));
-            if (added)
-                bodies[object].points.push_back(small.points[small.triangles[t][c]]);
+            if (added) bodies[object].points.push_back(small.points[small.triangles[t][c]]);
             own[c] = entry->second;
         }
         bodies[object].triangles.push_back(own);

@@ -26,7 +26,9 @@ struct Float3 {
     float x, y, z;
 };
 
-Float3 to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+Float3 to_float(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
 /// Owns an Embree scene.
 struct SceneDeleter {
@@ -52,8 +54,7 @@ struct Box {
 Box bounds_of(const Body& body) {
     Box box;
     for (const model::Triangle& triangle : body.triangles)
-        for (const std::uint32_t corner : triangle)
-            box.add(body.points[corner]);
+        for (const std::uint32_t corner : triangle) box.add(body.points[corner]);
     return box;
 }
 
@@ -63,7 +64,8 @@ void require_valid(const Body& body, std::size_t index) {
             if (corner >= body.points.size())
                 throw core::GeometryError("body " + std::to_string(index) + " has a triangle with corner " +
                                           std::to_string(corner) + " but only " +
-                                          std::to_string(body.points.size()) + " points; run kinelux-clean first");
+                                          std::to_string(body.points.size()) +
+                                          " points; run kinelux-clean first");
             else if (!std::isfinite(glm::dot(body.points[corner], Vec3(1.0))))
                 throw core::GeometryError("body " + std::to_string(index) +
                                           " has a coordinate that is not finite; run kinelux-clean first");
@@ -89,11 +91,12 @@ struct Occluders::Impl {
     std::vector<Body> bodies;
     std::vector<geometry::Pose> poses;
     DevicePointer device;
-    ScenePointer resting;                  ///< null: no resting triangle
-    ScenePointer moving;                   ///< instances of body_scenes; null: no moving triangle
-    std::vector<ScenePointer> body_scenes; ///< one per moving body with triangles, in coordinates about its centre
+    ScenePointer resting; ///< null: no resting triangle
+    ScenePointer moving;  ///< instances of body_scenes; null: no moving triangle
+    std::vector<ScenePointer>
+        body_scenes; ///< one per moving body with triangles, in coordinates about its centre
     std::vector<std::uint32_t> resting_bodies, moving_bodies; ///< geometry number -> body
-    std::vector<Vec3> body_centres;        ///< of moving_bodies, at rest
+    std::vector<Vec3> body_centres;                           ///< of moving_bodies, at rest
     Vec3 centre{0.0};
     double extent = 1.0;
 
@@ -119,27 +122,23 @@ void Occluders::Impl::measure() {
     Box box;
     for (const Body& body : bodies) {
         const Box own = bounds_of(body);
-        if (own.empty())
-            continue;
+        if (own.empty()) continue;
         box.add(own.low);
         box.add(own.high);
     }
-    if (box.empty())
-        return;
+    if (box.empty()) return;
     centre = box.centre();
     const double size = glm::length(box.high - box.low);
-    if (size > 0.0)
-        extent = size;
+    if (size > 0.0) extent = size;
 }
 
 void Occluders::Impl::attach_triangles(RTCScene scene, const Body& body, const Vec3& origin) const {
     RTCGeometry triangles = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* points = static_cast<Float3*>(rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                RTC_FORMAT_FLOAT3, sizeof(Float3),
-                                                                body.points.size()));
-    auto* corners = static_cast<model::Triangle*>(rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                          RTC_FORMAT_UINT3, sizeof(model::Triangle),
-                                                                          body.triangles.size()));
+    auto* points = static_cast<Float3*>(rtcSetNewGeometryBuffer(
+        triangles, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), body.points.size()));
+    auto* corners = static_cast<model::Triangle*>(
+        rtcSetNewGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                sizeof(model::Triangle), body.triangles.size()));
     if (points == nullptr || corners == nullptr) {
         rtcReleaseGeometry(triangles);
         throw core::ResourceError("no memory for the triangles that cast shadows");
@@ -157,11 +156,9 @@ void Occluders::Impl::build_resting() {
     for (std::size_t b = 0; b < bodies.size(); ++b)
         if (!bodies[b].moves && !bodies[b].triangles.empty())
             resting_bodies.push_back(static_cast<std::uint32_t>(b));
-    if (resting_bodies.empty())
-        return;
+    if (resting_bodies.empty()) return;
     resting = new_scene();
-    for (const std::uint32_t b : resting_bodies)
-        attach_triangles(resting.get(), bodies[b], centre);
+    for (const std::uint32_t b : resting_bodies) attach_triangles(resting.get(), bodies[b], centre);
     rtcCommitScene(resting.get());
 }
 
@@ -169,8 +166,7 @@ void Occluders::Impl::build_moving() {
     for (std::size_t b = 0; b < bodies.size(); ++b)
         if (bodies[b].moves && !bodies[b].triangles.empty())
             moving_bodies.push_back(static_cast<std::uint32_t>(b));
-    if (moving_bodies.empty())
-        return;
+    if (moving_bodies.empty()) return;
     moving = new_scene();
     for (const std::uint32_t b : moving_bodies) {
         body_centres.push_back(bounds_of(bodies[b]).centre());
@@ -216,8 +212,7 @@ bool Occluders::Impl::any(Among among) const {
 std::optional<RTCRay> Occluders::Impl::ray_between(const Vec3& from, const Vec3& to) const {
     const Vec3 whole = (to - from) / extent;
     const double length = glm::length(whole);
-    if (!(length > 2.0 * relative_end_offset))
-        return std::nullopt;
+    if (!(length > 2.0 * relative_end_offset)) return std::nullopt;
     const double cut = relative_end_offset / length;
     return ray_of(to_float(unit(from) + cut * whole), to_float((1.0 - 2.0 * cut) * whole), 1.0f);
 }
@@ -241,8 +236,7 @@ Hit Occluders::Impl::hit_of(const RTCRayHit& ray, std::uint32_t body) const {
 }
 
 Occluders::Occluders(std::vector<Body> bodies) : impl_(std::make_unique<Impl>()) {
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        require_valid(bodies[b], b);
+    for (std::size_t b = 0; b < bodies.size(); ++b) require_valid(bodies[b], b);
     impl_->bodies = std::move(bodies);
     impl_->poses.resize(impl_->bodies.size());
     impl_->measure();
@@ -253,7 +247,8 @@ Occluders::Occluders(std::vector<Body> bodies) : impl_(std::make_unique<Impl>())
     impl_->build_resting();
     impl_->build_moving();
     if (rtcGetDeviceError(impl_->device.get()) != RTC_ERROR_NONE)
-        throw core::ResourceError("Embree could not build its tree over the triangles; most likely too little memory");
+        throw core::ResourceError(
+            "Embree could not build its tree over the triangles; most likely too little memory");
 }
 
 // The scenes go before the device: members are destroyed in reverse order of declaration.
@@ -265,35 +260,29 @@ void Occluders::set_poses(std::span<const geometry::Pose> poses) {
     if (poses.size() != impl_->bodies.size())
         throw core::GeometryError(std::to_string(poses.size()) + " poses were given for " +
                                   std::to_string(impl_->bodies.size()) + " bodies");
-    for (const std::uint32_t b : impl_->moving_bodies)
-        impl_->poses[b] = poses[b];
-    if (impl_->moving)
-        impl_->place_moving();
+    for (const std::uint32_t b : impl_->moving_bodies) impl_->poses[b] = poses[b];
+    if (impl_->moving) impl_->place_moving();
 }
 
 bool Occluders::occluded(const Vec3& from, const Vec3& to, Among among) const {
-    if (!impl_->any(among))
-        return false;
+    if (!impl_->any(among)) return false;
     std::optional<RTCRay> ray = impl_->ray_between(from, to);
-    if (!ray)
-        return false;
+    if (!ray) return false;
     for (const auto& [scene, asked] : {std::pair(impl_->resting.get(), among != Among::Moving),
                                        std::pair(impl_->moving.get(), among != Among::Resting)}) {
-        if (scene == nullptr || !asked)
-            continue;
+        if (scene == nullptr || !asked) continue;
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcOccluded1(scene, &context, &*ray);
-        if (ray->tfar < 0.0f)
-            return true;
+        if (ray->tfar < 0.0f) return true;
     }
     return false;
 }
 
-void Occluders::occluded(std::span<const Segment> segments, std::span<std::uint8_t> blocked, Among among) const {
+void Occluders::occluded(std::span<const Segment> segments, std::span<std::uint8_t> blocked,
+                         Among among) const {
     std::fill(blocked.begin(), blocked.end(), std::uint8_t{0});
-    if (!impl_->any(among))
-        return;
+    if (!impl_->any(among)) return;
     std::array<RTCRay, rays_at_once> rays;
     std::array<std::size_t, rays_at_once> owners;
     for (std::size_t next = 0; next < segments.size();) {
@@ -322,23 +311,20 @@ void Occluders::occluded(std::span<const Segment> segments, std::span<std::uint8
                 }
             rtcOccluded1M(impl_->moving.get(), &context, rays.data(), count, sizeof(RTCRay));
         }
-        for (unsigned i = 0; i < count; ++i)
-            blocked[owners[i]] = rays[i].tfar < 0.0f ? 1 : 0;
+        for (unsigned i = 0; i < count; ++i) blocked[owners[i]] = rays[i].tfar < 0.0f ? 1 : 0;
     }
 }
 
 std::optional<Hit> Occluders::first_hit(const Vec3& origin, const Vec3& direction) const {
     const double length = glm::length(direction);
-    if (!impl_->any(Among::All) || !(length > 0.0))
-        return std::nullopt;
+    if (!impl_->any(Among::All) || !(length > 0.0)) return std::nullopt;
     const Vec3 unit_direction = direction / length;
     RTCRayHit ray{};
-    ray.ray = ray_of(to_float(impl_->unit(origin) + relative_end_offset * unit_direction), to_float(unit_direction),
-                     std::numeric_limits<float>::infinity());
+    ray.ray = ray_of(to_float(impl_->unit(origin) + relative_end_offset * unit_direction),
+                     to_float(unit_direction), std::numeric_limits<float>::infinity());
     std::optional<std::uint32_t> body;
     for (RTCScene scene : {impl_->resting.get(), impl_->moving.get()}) {
-        if (scene == nullptr)
-            continue;
+        if (scene == nullptr) continue;
         RTCHit before = ray.hit;
         ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         RTCIntersectContext context;
@@ -350,8 +336,7 @@ std::optional<Hit> Occluders::first_hit(const Vec3& origin, const Vec3& directio
             body = scene == impl_->resting.get() ? impl_->resting_bodies[ray.hit.geomID]
                                                  : impl_->moving_bodies[ray.hit.instID[0]];
     }
-    if (!body)
-        return std::nullopt;
+    if (!body) return std::nullopt;
     Hit hit = impl_->hit_of(ray, *body);
     hit.distance = glm::dot(hit.position - origin, unit_direction) / length;
     return hit;

@@ -19,7 +19,7 @@ namespace kinelux::visibility {
 
 /// A rigid body's triangles at rest.
 struct Body {
-    std::vector<Vec3> points;              ///< [m]
+    std::vector<Vec3> points; ///< [m]
     std::vector<model::Triangle> triangles;
     bool moves = false;
 };
@@ -36,7 +36,7 @@ struct Hit {
     std::uint32_t triangle = 0; ///< of that body
     double distance = 0.0;      ///< in units of the direction's length
     Vec3 position{0.0};
-    Vec3 normal{0.0};           ///< unit, geometric, to the triangle's front
+    Vec3 normal{0.0}; ///< unit, geometric, to the triangle's front
 };
 
 /// Ray queries against all bodies of a scene. Both sides of a triangle block. Segment ends that lie on surfaces are
@@ -54,7 +54,8 @@ public:
 
     bool occluded(const Vec3& from, const Vec3& to, Among among = Among::All) const;
     /// Many segments at once, fastest when they are coherent. @param blocked  1 or 0 per segment
-    void occluded(std::span<const Segment> segments, std::span<std::uint8_t> blocked, Among among = Among::All) const;
+    void occluded(std::span<const Segment> segments, std::span<std::uint8_t> blocked,
+                  Among among = Among::All) const;
     /// The first triangle along a ray that starts end_offset() ahead of `origin`.
     std::optional<Hit> first_hit(const Vec3& origin, const Vec3& direction) const;
 

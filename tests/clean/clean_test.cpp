@@ -132,6 +132,45 @@ TEST(Clean, lone_closed_part_is_a_room) {
     EXPECT_NEAR(model::signed_volume(cleaned(scene).scene.objects[0].mesh), -1.0, 1e-14);
 }
 
+TEST(Clean, walls_that_are_objects_of_their_own_make_a_room) {
+    model::Scene scene = auto_scene();
+    const model::Mesh room = box_mesh(Vec3{0.0}, Vec3{5.0, 4.0, 3.0});
+    for (std::size_t side = 0; side < 6; ++side) {
+        model::Mesh wall = support::finished(
+            {room.points, {room.triangles[2 * side], room.triangles[2 * side + 1]}, {}, {}, {}});
+        if (side % 2 == 0) wall = support::turned_inside_out(wall);
+        add_object(scene, "wall " + std::to_string(side), wall);
+    }
+    // One wall has a point more on its edges than its neighbours.
+    model::Mesh& wall = scene.objects[1].mesh;
+    wall.points.push_back(0.5 * (wall.points[wall.triangles[0][0]] + wall.points[wall.triangles[0][1]]));
+    const model::Triangle whole = wall.triangles[0];
+    wall.triangles[0] = {whole[0], 8, whole[2]};
+    wall.triangles.push_back({8, whole[1], whole[2]});
+    wall.materials.push_back({});
+    wall.source_faces.push_back(2);
+    add_object(scene, "table", box_mesh(Vec3{1.0, 1.0, 0.0}, Vec3{2.0, 2.0, 1.0}));
+    const CleanResult result = cleaned(scene);
+    for (std::size_t o = 0; o < 6; ++o) {
+        EXPECT_EQ(result.reports[o].two_sided_faces, 0U);
+        const model::Mesh& mesh = result.scene.objects[o].mesh;
+        const Vec3 to_middle = Vec3{2.5, 2.0, 1.5} - mesh.points[mesh.triangles[0][0]];
+        EXPECT_GT(glm::dot(model::triangle_normal(mesh, 0), to_middle), 0.0);
+    }
+    EXPECT_NEAR(result.reports[0].volume_out, 60.0, 1e-12);
+}
+
+TEST(Clean, walls_with_a_gap_stay_sheets) {
+    model::Scene scene = auto_scene();
+    const model::Mesh room = box_mesh(Vec3{0.0}, Vec3{5.0, 4.0, 3.0});
+    for (std::size_t side = 0; side < 5; ++side) {
+        add_object(scene, "wall",
+                   support::finished(
+                       {room.points, {room.triangles[2 * side], room.triangles[2 * side + 1]}, {}, {}, {}}));
+    }
+    for (const CleanReport& report : cleaned(scene).reports) EXPECT_EQ(report.two_sided_faces, 2U);
+}
+
 TEST(Clean, skin_around_a_cavity_faces_outwards) {
     model::Scene scene = auto_scene();
     add_object(scene, "skin", box_mesh(Vec3{0.0}, Vec3{5.0}));

@@ -98,7 +98,7 @@ TEST(Cluster, pieces_of_one_patch_fit_together_to_the_last_bit) {
     std::map<std::tuple<double, double, double, double>, int> edges;
     for (const model::DomainTriangle& t : tree.domain_triangles) {
         for (int k = 0; k < 3; ++k) {
-            const Vec2 a = t[k], b = t[(k + 1) % 3];
+            const Vec2 &a = t[k], &b = t[(k + 1) % 3];
             ++edges[{a.x, a.y, b.x, b.y}];
         }
     }

@@ -63,7 +63,7 @@ TEST(DomainCut, neighbours_share_their_corners_to_the_last_bit) {
              cut_domain(fan(seed), grid_lines(0.0, 1.0, 0.13), grid_lines(0.0, 1.0, 0.29))) {
             for (const model::DomainTriangle& t : cell.triangles) {
                 for (int k = 0; k < 3; ++k) {
-                    const Vec2 a = t[k], b = t[(k + 1) % 3];
+                    const Vec2 &a = t[k], &b = t[(k + 1) % 3];
                     EXPECT_TRUE(edges.insert({a.x, a.y, b.x, b.y}).second) << "seed " << seed;
                 }
             }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/case_folder.h"
 
+#include <bit>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -19,10 +20,15 @@ using support::put_bytes;
 /// Bit for bit: -0.0 is not 0.0.
 template <class Value>
 bool same_bits(const std::vector<Value>& a, const std::vector<Value>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0);
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0);
 }
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_bits(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+bool same_bits(const Vec3& a, const Vec3& b) {
+    return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
 
 /// A case with every file, written once for each test.
 class CaseFolderTest : public testing::Test {
@@ -252,6 +258,7 @@ TEST_F(CaseFolderTest, same_data_gives_the_same_bytes) {
     std::vector<std::filesystem::path> paths;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
         if (entry.is_regular_file()) paths.push_back(entry.path());
+    first.reserve(paths.size());
     for (const auto& path : paths) first.push_back(bytes_of(path));
     ASSERT_EQ(paths.size(), 11u); // six files, clean.vtm with two meshes, patches.vtu, clusters.vtu
     SetUp();
@@ -265,7 +272,8 @@ TEST_F(CaseFolderTest, truncated_files_are_refused_by_name) {
         for (std::size_t length = 0; length < whole.size() - 1; length += length < 64 ? 7 : step) {
             put_bytes(folder.file(file), whole.substr(0, length));
             const std::string error = error_of(file);
-            EXPECT_NE(error.find(file), std::string::npos) << file << " cut to " << length << ": '" << error << "'";
+            EXPECT_NE(error.find(file), std::string::npos)
+                << file << " cut to " << length << ": '" << error << "'";
             EXPECT_NE(error.find("again"), std::string::npos) << error;
             EXPECT_EQ(error.find('\n'), std::string::npos) << error;
         }
@@ -282,8 +290,10 @@ TEST_F(CaseFolderTest, damaged_bytes_are_refused_in_hdf5_and_never_crash) {
             damaged[at] = static_cast<char>(damaged[at] ^ 0x5A);
             put_bytes(folder.file(file), damaged);
             const std::string error = error_of(file);
-            const bool may_pass = file.ends_with(".json") || (at >= 60 && at < 512); // a name; padding of the user block
-            EXPECT_TRUE(may_pass || error.find(file) != std::string::npos) << file << " byte " << at << ": " << error;
+            const bool may_pass =
+                file.ends_with(".json") || (at >= 60 && at < 512); // a name; padding of the user block
+            EXPECT_TRUE(may_pass || error.find(file) != std::string::npos)
+                << file << " byte " << at << ": " << error;
         }
         put_bytes(folder.file(file), whole);
     }
@@ -324,8 +334,9 @@ TEST_F(CaseFolderTest, file_made_from_something_else_is_refused_with_all_that_fo
     EXPECT_EQ(error_of("clusters.h5"), "");
     for (const std::string file : {"plan.json", "coefficients.h5", "solution.h5"}) {
         const std::string error = error_of(file);
-        EXPECT_NE(error.find("plan.json: made from another clusters.h5 than lies beside it; run kinelux-plan"),
-                  std::string::npos)
+        EXPECT_NE(
+            error.find("plan.json: made from another clusters.h5 than lies beside it; run kinelux-plan"),
+            std::string::npos)
             << error;
     }
 }

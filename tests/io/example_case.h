@@ -18,8 +18,8 @@ namespace kinelux::support {
 
 inline constexpr double awkward = 0.1 + 0.2; // 0.30000000000000004: needs all 17 digits
 
-inline model::Object rectangle_object(const std::string& name, double size, double height, MaterialId material,
-                                      bool facing_up) {
+inline model::Object rectangle_object(const std::string& name, double size, double height,
+                                      MaterialId material, bool facing_up) {
     model::Object object;
     object.name = name;
     object.source = "room.obj:" + name;
@@ -50,8 +50,9 @@ inline model::Scene example_scene() {
                      rectangle_object("Lampe \xC3\xA4 'x' & <y>", 0.5, 1.5, MaterialId(1), false)};
     scene.objects[1].motion = MotionId(0);
     scene.motions = {{"glide", model::Interpolation::Cubic, Vec3(0.0, -0.0, awkward), {}}};
-    scene.motions[0].keyframes = {{0.0, Vec3(0.0), Quat(1.0, 0.0, 0.0, 0.0)},
-                                  {awkward, Vec3(1.0, 0.5, 0.0), Quat(std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5))}};
+    scene.motions[0].keyframes = {
+        {0.0, Vec3(0.0), Quat(1.0, 0.0, 0.0, 0.0)},
+        {awkward, Vec3(1.0, 0.5, 0.0), Quat(std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5))}};
     scene.meters = {{"desk", Vec3(0.1, 0.1, 0.7), Vec3(1, 0, 0), Vec3(0, 1, 0), 4, 3}};
     scene.source = "scenes/room.toml";
     return scene;

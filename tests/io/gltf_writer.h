@@ -23,15 +23,16 @@ public:
     /// The JSON of the whole file; `rest` is everything but asset, accessors, bufferViews and buffers.
     std::string json(const std::string& rest, const std::string& buffer_uri) const {
         const std::string uri = buffer_uri.empty() ? "" : ",\"uri\":\"" + buffer_uri + "\"";
-        return "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[" + accessors_ + "],\"bufferViews\":[" + views_ +
-               "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes_.size()) + uri + "}]," + rest + "}";
+        return "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[" + accessors_ + "],\"bufferViews\":[" +
+               views_ + "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes_.size()) + uri + "}]," +
+               rest + "}";
     }
     std::string glb(const std::string& rest) const {
         std::string text = json(rest, "");
         text.resize((text.size() + 3) / 4 * 4, ' ');
         const std::size_t length = 12 + 8 + text.size() + 8 + bytes_.size();
-        return "glTF" + number(2) + number(length) + number(text.size()) + "JSON" + text + number(bytes_.size()) +
-               std::string("BIN\0", 4) + bytes_;
+        return "glTF" + number(2) + number(length) + number(text.size()) + "JSON" + text +
+               number(bytes_.size()) + std::string("BIN\0", 4) + bytes_;
     }
     const std::string& bytes() const { return bytes_; }
 
@@ -46,8 +47,9 @@ private:
         const std::string comma = count_ == 0 ? "" : ",";
         views_ += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes_.size()) +
                   ",\"byteLength\":" + std::to_string(size) + "}";
-        accessors_ += comma + "{\"bufferView\":" + std::to_string(count_) + ",\"componentType\":" +
-                      std::to_string(component) + ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"}";
+        accessors_ += comma + "{\"bufferView\":" + std::to_string(count_) +
+                      ",\"componentType\":" + std::to_string(component) +
+                      ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"}";
         bytes_.append(static_cast<const char*>(data), size);
         return count_++;
     }

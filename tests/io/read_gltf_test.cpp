@@ -24,7 +24,8 @@ protected:
     ReadGltfTest() { positions_ = writer_.add({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3"); }
 
     std::string meshes(const std::string& more = "") const {
-        return "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":" +
+        return "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+               "\"POSITION\":" +
                std::to_string(positions_) + "}" + more + "}]}]";
     }
     ImportedMeshes read(const std::string& rest) const {
@@ -42,7 +43,8 @@ protected:
 };
 
 TEST_F(ReadGltfTest, node_transforms_apply_and_a_mirrored_face_keeps_its_front) {
-    const ImportedMeshes read_back = read(meshes() + R"(,"nodes":[{"name":"room","translation":[10,0,0],"children":[1,2]},
+    const ImportedMeshes read_back =
+        read(meshes() + R"(,"nodes":[{"name":"room","translation":[10,0,0],"children":[1,2]},
         {"name":"plain","mesh":0,"rotation":[0,0,0.70710678118654752,0.70710678118654752],"scale":[2,2,2]},
         {"name":"mirrored","mesh":0,"scale":[-1,1,1]}])");
     ASSERT_EQ(read_back.objects.size(), 2U);
@@ -53,11 +55,13 @@ TEST_F(ReadGltfTest, node_transforms_apply_and_a_mirrored_face_keeps_its_front) 
     expect_near(model::triangle_normal(read_back.objects[1].mesh, 0), {0, 0, 1});
     EXPECT_EQ(read_back.up, Vec3(0, 1, 0));
     EXPECT_TRUE(read_back.unit_stated);
-    EXPECT_NE(std::find(read_back.groups[1].begin(), read_back.groups[1].end(), "room"), read_back.groups[1].end());
+    EXPECT_NE(std::find(read_back.groups[1].begin(), read_back.groups[1].end(), "room"),
+              read_back.groups[1].end());
 }
 
 TEST_F(ReadGltfTest, emissive_strength_multiplies_the_emissive_factor) {
-    const ImportedMeshes read_back = read(meshes(",\"material\":0") + R"(,"nodes":[{"mesh":0}],"materials":[{"name":"lamp",
+    const ImportedMeshes read_back =
+        read(meshes(",\"material\":0") + R"(,"nodes":[{"mesh":0}],"materials":[{"name":"lamp",
         "doubleSided":true,"emissiveFactor":[1,0.5,0],"pbrMetallicRoughness":{"baseColorFactor":[0.2,1,0.4,1]},
         "extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":40}}}])");
     ASSERT_EQ(read_back.materials.size(), 1U);
@@ -80,10 +84,12 @@ TEST_F(ReadGltfTest, linear_animation_moves_the_whole_subtree_about_the_nodes_or
     const float h = std::sqrt(0.5F);
     const std::string turn = std::to_string(writer_.add({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
     const std::string shift = std::to_string(writer_.add({1, 0, 0, 1, 0, 4}, "VEC3"));
-    const ImportedMeshes read_back = read(meshes() + R"(,"nodes":[{"name":"world","translation":[0,5,0],"children":[1]},
+    const ImportedMeshes read_back =
+        read(meshes() + R"(,"nodes":[{"name":"world","translation":[0,5,0],"children":[1]},
         {"name":"door","translation":[1,0,0],"children":[2]},{"name":"leaf","mesh":0,"translation":[3,0,0]}],
-        "animations":[{"samplers":[{"input":)" + times + R"(,"output":)" + turn + R"(},{"input":)" + times +
-        R"(,"output":)" + shift + R"(}],"channels":[{"sampler":0,"target":{"node":1,"path":"rotation"}},
+        "animations":[{"samplers":[{"input":)" +
+             times + R"(,"output":)" + turn + R"(},{"input":)" + times + R"(,"output":)" + shift +
+             R"(}],"channels":[{"sampler":0,"target":{"node":1,"path":"rotation"}},
         {"sampler":1,"target":{"node":1,"path":"translation"}}]}])");
     ASSERT_EQ(read_back.motions.size(), 1U);
     const model::Motion& motion = read_back.motions[0];
@@ -104,8 +110,9 @@ TEST_F(ReadGltfTest, moving_parent_and_child_follow_their_joint_path_between_the
     const std::string turn = std::to_string(writer_.add({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
     const std::string target = R"(,"target":{"path":"rotation","node":)";
     const ImportedMeshes read_back = read(meshes() + R"(,"nodes":[{"name":"upper","children":[1]},
-        {"name":"lower","mesh":0,"translation":[2,0,0]}],"animations":[{"samplers":[{"input":)" + times + R"(,"output":)" +
-        turn + R"(}],"channels":[{"sampler":0)" + target + R"(0}},{"sampler":0)" + target + R"(1}}]}])");
+        {"name":"lower","mesh":0,"translation":[2,0,0]}],"animations":[{"samplers":[{"input":)" +
+                                          times + R"(,"output":)" + turn + R"(}],"channels":[{"sampler":0)" +
+                                          target + R"(0}},{"sampler":0)" + target + R"(1}}]}])");
     const model::Motion& motion = read_back.motions.at(0);
     const Vec3 tip = read_back.objects.at(0).mesh.points[1]; // 1 beyond the joint at (2, 0, 0)
     expect_near(tip, {3, 0, 0});
@@ -117,11 +124,13 @@ TEST_F(ReadGltfTest, moving_parent_and_child_follow_their_joint_path_between_the
 TEST_F(ReadGltfTest, step_and_cubic_interpolation_survive_and_scale_channels_are_refused_with_a_note) {
     const std::string times = std::to_string(writer_.add({0, 1}, "SCALAR"));
     const std::string shift = std::to_string(writer_.add({0, 0, 0, 5, 0, 0}, "VEC3"));
-    const std::string spline = std::to_string(writer_.add({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0}, "VEC3"));
+    const std::string spline =
+        std::to_string(writer_.add({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0}, "VEC3"));
     const auto with = [&](const std::string& output, const std::string& mode) {
-        return read(meshes() + R"(,"nodes":[{"name":"lift","mesh":0}],"animations":[{"samplers":[{"input":)" + times +
-                    R"(,"output":)" + output + R"(,"interpolation":")" + mode + R"("},{"input":)" + times +
-                    R"(,"output":)" + shift + R"(}],"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},
+        return read(meshes() + R"(,"nodes":[{"name":"lift","mesh":0}],"animations":[{"samplers":[{"input":)" +
+                    times + R"(,"output":)" + output + R"(,"interpolation":")" + mode + R"("},{"input":)" +
+                    times + R"(,"output":)" + shift +
+                    R"(}],"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},
                     {"sampler":1,"target":{"node":0,"path":"scale"}}]}])");
     };
     const ImportedMeshes step = with(shift, "STEP");
@@ -131,8 +140,9 @@ TEST_F(ReadGltfTest, step_and_cubic_interpolation_survive_and_scale_channels_are
     const ImportedMeshes cubic = with(spline, "CUBICSPLINE");
     EXPECT_EQ(cubic.motions.at(0).interpolation, model::Interpolation::Cubic);
     EXPECT_EQ(cubic.motions[0].keyframes.at(1).translation, Vec3(5, 0, 0));
-    EXPECT_TRUE(std::any_of(cubic.notes.begin(), cubic.notes.end(),
-                            [](const std::string& note) { return note.find("spline") != std::string::npos; }));
+    EXPECT_TRUE(std::any_of(cubic.notes.begin(), cubic.notes.end(), [](const std::string& note) {
+        return note.find("spline") != std::string::npos;
+    }));
 }
 
 TEST_F(ReadGltfTest, bad_coordinates_indices_and_circles_are_errors) {
@@ -180,7 +190,8 @@ TEST_F(ReadGltfTest, binary_file_with_any_byte_changed_ends_in_an_error_or_a_val
             changed[i] = static_cast<char>(changed[i] ^ flip);
             put_bytes(file, changed);
             try {
-                for (const model::Object& object : read_mesh(file, 3).objects) model::check(object.mesh, "changed");
+                for (const model::Object& object : read_mesh(file, 3).objects)
+                    model::check(object.mesh, "changed");
             } catch (const core::Error&) {
             }
         }

@@ -33,7 +33,8 @@ protected:
 };
 
 // A letter U, 3 wide and 3 high with a notch of 1 x 2: area 7.
-const std::vector<Vec3> letter_u = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+const std::vector<Vec3> letter_u = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0},
+                                    {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
 
 double area_of(const std::vector<Vec3>& corners) {
     double sum = 0.0;
@@ -48,7 +49,8 @@ TEST(TriangulatePolygonTest, concave_polygon_is_covered_once_from_every_first_co
             for (int axis = 0; axis < 3; ++axis) {
                 std::vector<Vec3> corners;
                 for (std::size_t i = 0; i < letter_u.size(); ++i) {
-                    const Vec3& p = letter_u[(start + (reversed ? letter_u.size() - i : i)) % letter_u.size()];
+                    const Vec3& p =
+                        letter_u[(start + (reversed ? letter_u.size() - i : i)) % letter_u.size()];
                     corners.push_back(axis == 0 ? p : axis == 1 ? Vec3(p.y, p.z, p.x) : Vec3(p.z, p.x, p.y));
                 }
                 EXPECT_NEAR(area_of(corners), 7.0, 1e-12) << start << reversed << axis;
@@ -97,8 +99,9 @@ TEST_F(ReadObjTest, coordinates_are_the_nearest_doubles) {
 }
 
 TEST_F(ReadObjTest, groups_and_objects_become_objects_and_groups_of_one_name_are_joined) {
-    const ImportedMeshes meshes = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\no house\ng wall\nf 1 2 3\ng door frame\n"
-                                       "f 2 4 3\ng wall\nf 1 3 4\n");
+    const ImportedMeshes meshes =
+        read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\no house\ng wall\nf 1 2 3\ng door frame\n"
+             "f 2 4 3\ng wall\nf 1 3 4\n");
     ASSERT_EQ(meshes.objects.size(), 2U);
     EXPECT_EQ(meshes.objects[0].name, "wall");
     EXPECT_EQ(meshes.objects[0].mesh.triangles.size(), 2U);
@@ -122,7 +125,8 @@ TEST_F(ReadObjTest, material_colours_survive_and_white_is_lowered_with_a_note) {
 }
 
 TEST_F(ReadObjTest, missing_material_file_is_a_note_and_its_names_survive_as_grey) {
-    const ImportedMeshes meshes = read("mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl brick\nf 1 2 3\nusemtl tile\nf 3 2 1\n");
+    const ImportedMeshes meshes =
+        read("mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl brick\nf 1 2 3\nusemtl tile\nf 3 2 1\n");
     ASSERT_EQ(meshes.materials.size(), 2U);
     EXPECT_EQ(meshes.materials[0].name, "brick");
     EXPECT_EQ(meshes.materials[1].name, "tile");
@@ -144,7 +148,8 @@ TEST_F(ReadObjTest, bad_vertices_and_indices_name_file_and_line) {
     EXPECT_NE(message_of("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n").find("mesh.obj:2:"), std::string::npos);
     EXPECT_NE(message_of("v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n").find("mesh.obj:2:"), std::string::npos);
     EXPECT_NE(message_of("v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n").find("mesh.obj:2:"), std::string::npos);
-    EXPECT_NE(message_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n").find("mesh.obj:5:"), std::string::npos);
+    EXPECT_NE(message_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n").find("mesh.obj:5:"),
+              std::string::npos);
     EXPECT_NE(message_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n").find("mesh.obj:4:"), std::string::npos);
     EXPECT_NE(message_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n").find("mesh.obj:4:"), std::string::npos);
 }
@@ -163,8 +168,9 @@ TEST_F(ReadObjTest, file_without_faces_is_a_geometry_error) {
 
 TEST_F(ReadObjTest, file_cut_off_at_any_length_ends_in_an_error_or_a_valid_mesh) {
     write("lamp.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\n");
-    const std::string whole = "mtllib lamp.mtl\no box\nv 0 0 0\nv 1.5 0 0\nv 1.5 1e0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"
-                              "g top\nusemtl lamp\ns 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\ng bottom\nf -1//1 -2//1 -3//1\n";
+    const std::string whole =
+        "mtllib lamp.mtl\no box\nv 0 0 0\nv 1.5 0 0\nv 1.5 1e0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"
+        "g top\nusemtl lamp\ns 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\ng bottom\nf -1//1 -2//1 -3//1\n";
     for (std::size_t length = 0; length <= whole.size(); ++length) {
         try {
             const ImportedMeshes meshes = read(whole.substr(0, length));

@@ -22,7 +22,8 @@ model::DisplayMesh two_rectangles(const model::Scene& scene) {
         mesh.points.insert(mesh.points.end(), source.points.begin(), source.points.end());
         mesh.normals.resize(mesh.points.size(), model::triangle_normal(source, 0));
         mesh.point_objects.resize(mesh.points.size(), static_cast<std::uint32_t>(o));
-        for (const auto& [a, b, c] : source.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+        for (const auto& [a, b, c] : source.triangles)
+            mesh.triangles.push_back({first + a, first + b, first + c});
         mesh.elements.resize(mesh.triangles.size(), ElementId(o));
         mesh.objects.resize(mesh.triangles.size(), ObjectId(o));
         mesh.materials.resize(mesh.triangles.size(), source.materials[0]);
@@ -33,11 +34,13 @@ model::DisplayMesh two_rectangles(const model::Scene& scene) {
     return mesh;
 }
 
-model::SurfaceFields uniform_fields(const model::DisplayMesh& mesh, const model::Scene& scene, double time_s, float level) {
+model::SurfaceFields uniform_fields(const model::DisplayMesh& mesh, const model::Scene& scene, double time_s,
+                                    float level) {
     model::SurfaceFields fields;
     fields.time_s = time_s;
     fields.points = mesh.points;
-    model::NamedArray irradiance{"Irradiance_lx", 3, scene.channels, {}}, radiosity{"Radiosity_lm_m2", 3, scene.channels, {}};
+    model::NamedArray irradiance{"Irradiance_lx", 3, scene.channels, {}},
+        radiosity{"Radiosity_lm_m2", 3, scene.channels, {}};
     for (std::size_t p = 0; p < mesh.points.size(); ++p)
         for (int c = 0; c < 3; ++c) {
             irradiance.values.push_back(level + static_cast<float>(p));
@@ -53,7 +56,8 @@ protected:
     void write(const std::filesystem::path& folder) const {
         ViewWriter writer(folder, mesh, scene);
         for (std::uint32_t frame = 0; frame < 3; ++frame)
-            writer.write_frame(frame, uniform_fields(mesh, scene, scene.time.time_of_frame(frame), 10.0f + static_cast<float>(frame)));
+            writer.write_frame(frame, uniform_fields(mesh, scene, scene.time.time_of_frame(frame),
+                                                     10.0f + static_cast<float>(frame)));
         EXPECT_FALSE(std::filesystem::exists(folder / "view.pvd"));
         writer.finish();
     }
@@ -84,7 +88,9 @@ TEST_F(WriteViewTest, frames_come_back_as_written) {
 TEST_F(WriteViewTest, index_names_every_frame_with_its_time) {
     write(temporary.path());
     const std::string index = bytes_of(temporary.path() / "view.pvd");
-    EXPECT_NE(index.find("timestep=\"0\" group=\"\" part=\"0\" file=\"frames/frame_0000.vtu\""), std::string::npos) << index;
+    EXPECT_NE(index.find("timestep=\"0\" group=\"\" part=\"0\" file=\"frames/frame_0000.vtu\""),
+              std::string::npos)
+        << index;
     EXPECT_NE(index.find("timestep=\"0.15000000000000002\""), std::string::npos) << index;
     EXPECT_NE(index.find("timestep=\"0.30000000000000004\""), std::string::npos) << index;
 }
@@ -93,7 +99,8 @@ TEST_F(WriteViewTest, same_fields_give_the_same_bytes) {
     write(temporary.path() / "a");
     write(temporary.path() / "b");
     for (const std::string name : {"view.pvd", "view.py", "frames/frame_0000.vtu", "frames/frame_0002.vtu"})
-        EXPECT_TRUE(bytes_of(temporary.path() / "a" / name) == bytes_of(temporary.path() / "b" / name)) << name;
+        EXPECT_TRUE(bytes_of(temporary.path() / "a" / name) == bytes_of(temporary.path() / "b" / name))
+            << name;
 }
 
 TEST_F(WriteViewTest, truncated_frames_are_refused) {
@@ -112,7 +119,8 @@ TEST_F(WriteViewTest, truncated_frames_are_refused) {
 
 TEST_F(WriteViewTest, frame_without_the_irradiance_of_this_quantity_is_refused) {
     write(temporary.path());
-    EXPECT_THROW(read_frame(temporary.path() / "frames" / "frame_0000.vtu", model::Quantity::Radiometric), core::FileError);
+    EXPECT_THROW(read_frame(temporary.path() / "frames" / "frame_0000.vtu", model::Quantity::Radiometric),
+                 core::FileError);
 }
 
 TEST_F(WriteViewTest, view_script_names_no_path_but_its_own) {

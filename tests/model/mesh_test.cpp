@@ -58,7 +58,8 @@ TEST(MeshTest, check_refuses_bad_indices_lengths_and_coordinates) {
     mesh = tetrahedron(Vec3(0.0));
     mesh.source_faces = {1, 2};
     EXPECT_THROW(check(mesh, "body"), core::GeometryError);
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         mesh = tetrahedron(Vec3(0.0));
         mesh.points[3].y = bad;
         EXPECT_THROW(check(mesh, "body"), core::GeometryError);

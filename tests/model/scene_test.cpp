@@ -15,7 +15,8 @@ Scene small_scene() {
     Scene scene;
     scene.channels = {"grey"};
     scene.materials.push_back({"white", {0.7}, {0.0}, Sides::Auto});
-    scene.motions.push_back({"slide", Interpolation::Linear, Vec3(0.0), {{0.0, {}, {1, 0, 0, 0}}, {1.0, {}, {1, 0, 0, 0}}}});
+    scene.motions.push_back(
+        {"slide", Interpolation::Linear, Vec3(0.0), {{0.0, {}, {1, 0, 0, 0}}, {1.0, {}, {1, 0, 0, 0}}}});
     Object object;
     object.name = "floor";
     object.mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -58,21 +59,31 @@ TEST(SceneTest, check_refuses_each_broken_setting) {
         [](Scene& s) { s.materials[0].reflectance = {-0.1}; },
         [=](Scene& s) { s.materials[0].reflectance = {nan}; },
         [](Scene& s) { s.materials[0].exitance = {-1.0}; },
-        [](Scene& s) { s.materials[0].exitance = {1.0, 2.0}; },
+        [](Scene& s) {
+            s.materials[0].exitance = {1.0, 2.0};
+        },
         [](Scene& s) { s.objects[0].motion = MotionId(1); },
         [](Scene& s) { s.motions[0].keyframes.clear(); },
         [](Scene& s) { s.motions[0].keyframes[1].time_s = 0.0; },
         [=](Scene& s) { s.motions[0].keyframes[1].translation.x = nan; },
         [](Scene& s) { s.motions[0].keyframes[1].rotation = Quat(2, 0, 0, 0); },
-        [](Scene& s) { s.time = {0.0, 0.0, 0}; },
-        [](Scene& s) { s.time = {1.0, 0.0, 2}; },
+        [](Scene& s) {
+            s.time = {0.0, 0.0, 0};
+        },
+        [](Scene& s) {
+            s.time = {1.0, 0.0, 2};
+        },
         [](Scene& s) { s.accuracy.target = 1.0; },
         [](Scene& s) { s.accuracy.degree = 4; },
         [](Scene& s) { s.accuracy.element_size = 0.0; },
         [](Scene& s) { s.exported.cell_size = -1.0; },
         [](Scene& s) { s.exported.frames = {1}; },
-        [](Scene& s) { s.meters.push_back({"flat", {}, {1, 0, 0}, {2, 0, 0}, 1, 1}); },
-        [](Scene& s) { s.meters.push_back({"none", {}, {1, 0, 0}, {0, 1, 0}, 0, 1}); },
+        [](Scene& s) {
+            s.meters.push_back({"flat", {}, {1, 0, 0}, {2, 0, 0}, 1, 1});
+        },
+        [](Scene& s) {
+            s.meters.push_back({"none", {}, {1, 0, 0}, {0, 1, 0}, 0, 1});
+        },
         [](Scene& s) { s.up = Vec3(0.0); },
     };
     for (std::size_t i = 0; i < faults.size(); ++i) {

@@ -14,7 +14,8 @@ namespace {
 using namespace kinelux;
 
 /// A square of cells x cells x 2 triangles in the plane z = height.
-void add_square(model::DisplayMesh& mesh, ObjectId object, MaterialId material, double size, double height, int cells) {
+void add_square(model::DisplayMesh& mesh, ObjectId object, MaterialId material, double size, double height,
+                int cells) {
     const auto first = static_cast<std::uint32_t>(mesh.points.size());
     const bool up = object == ObjectId(0);
     for (int v = 0; v <= cells; ++v)
@@ -41,10 +42,10 @@ void add_square(model::DisplayMesh& mesh, ObjectId object, MaterialId material, 
         }
 }
 
-model::NamedArray array(const std::string& name, std::vector<std::string> channels) {
+model::NamedArray array(const std::string& name, const std::vector<std::string>& channels) {
     return {.name = name,
             .components = static_cast<std::uint32_t>(channels.size()),
-            .component_names = std::move(channels),
+            .component_names = channels,
             .values = {}};
 }
 
@@ -65,7 +66,8 @@ model::SurfaceFields fields(const model::DisplayMesh& mesh, const model::Scene& 
         for (std::size_t c = 0; c < scene.channels.size(); ++c) {
             const double E = object == 0 ? 200.0 / (1.0 + dx * dx + dy * dy) : 0.0;
             irradiance.values.push_back(static_cast<float>(E));
-            radiosity.values.push_back(static_cast<float>(material.exitance[c] + material.reflectance[c] * E));
+            radiosity.values.push_back(
+                static_cast<float>(material.exitance[c] + material.reflectance[c] * E));
         }
         error.values.push_back(0.5f);
     }

@@ -12,7 +12,8 @@ namespace {
 double area_of(const Body& body) {
     double sum = 0.0;
     for (const model::Triangle& t : body.triangles)
-        sum += 0.5 * glm::length(glm::cross(body.points[t[1]] - body.points[t[0]], body.points[t[2]] - body.points[t[0]]));
+        sum += 0.5 * glm::length(glm::cross(body.points[t[1]] - body.points[t[0]],
+                                            body.points[t[2]] - body.points[t[0]]));
     return sum;
 }
 
@@ -29,8 +30,7 @@ model::Patch cylinder(double orientation) {
     patch.surface.radius = 1.0;
     patch.surface.orientation = orientation;
     for (std::uint32_t i = 0; i <= 8; ++i)
-        for (const double v : {0.0, 1.0})
-            patch.points.push_back({i * std::numbers::pi / 4.0, v});
+        for (const double v : {0.0, 1.0}) patch.points.push_back({i * std::numbers::pi / 4.0, v});
     for (std::uint32_t i = 0; i < 8; ++i) {
         patch.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 3});
         patch.triangles.push_back({2 * i, 2 * i + 3, 2 * i + 1});

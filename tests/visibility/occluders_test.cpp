@@ -19,7 +19,8 @@ using test::parallelogram;
 geometry::Pose shifted(const Vec3& by) { return {Quat(1.0, 0.0, 0.0, 0.0), by}; }
 
 /// Segments between two heights that leave the vertices and edges of the scenes here aside.
-std::vector<Segment> random_segments(std::size_t count, double reach, double low, double high, std::uint64_t seed) {
+std::vector<Segment> random_segments(std::size_t count, double reach, double low, double high,
+                                     std::uint64_t seed) {
     core::Random random(seed);
     std::vector<Segment> segments;
     for (std::size_t i = 0; i < count; ++i) {
@@ -54,8 +55,8 @@ TEST(Occluders, the_faces_that_segments_end_on_do_not_block) {
 
 TEST(Occluders, coplanar_faces_do_not_block) {
     // The receiver lies on a large square; a second square lies in the same plane, a third in the source's plane.
-    const Occluders occluders({level_square(2.0, 0.0), level_square(0.5, 0.0), level_square(2.0, 1.0),
-                               level_square(0.7, 1.0)});
+    const Occluders occluders(
+        {level_square(2.0, 0.0), level_square(0.5, 0.0), level_square(2.0, 1.0), level_square(0.7, 1.0)});
     for (const Segment& s : random_segments(20000, 1.99, 0.0, 1.0, 13))
         EXPECT_FALSE(occluders.occluded(s.from, s.to));
 }
@@ -100,8 +101,7 @@ TEST(Occluders, a_turned_body_blocks_as_its_turned_triangles_do) {
     const Quat turn = glm::angleAxis(0.7, glm::normalize(Vec3(1.0, 2.0, 0.5)));
     const geometry::Pose pose{turn, {0.2, -0.1, 0.1}};
     Body body = level_square(0.8, 0.05, true), copy = body;
-    for (Vec3& x : copy.points)
-        x = pose.point(x);
+    for (Vec3& x : copy.points) x = pose.point(x);
     copy.moves = false;
     Occluders moved({level_square(4.0, -2.0), body});
     const Occluders still({level_square(4.0, -2.0), copy});
@@ -119,7 +119,8 @@ TEST(Occluders, a_turned_body_blocks_as_its_turned_triangles_do) {
 TEST(Occluders, a_batch_gives_what_single_queries_give) {
     std::vector<Body> bodies{level_square(1.0, 0.0), level_square(0.4, 0.4, true), level_square(0.6, -0.5)};
     for (int i = 0; i < 60; ++i)
-        bodies.push_back(parallelogram({0.1 * i - 3.0, -2.0, 0.7}, {0.05, 0.0, 0.02}, {0.01, 4.0, 0.0}, i % 7 == 0));
+        bodies.push_back(
+            parallelogram({0.1 * i - 3.0, -2.0, 0.7}, {0.05, 0.0, 0.02}, {0.01, 4.0, 0.0}, i % 7 == 0));
     Occluders occluders(bodies);
     std::vector<geometry::Pose> poses(bodies.size());
     poses[1] = shifted({0.3, 0.2, -0.1});
@@ -164,8 +165,7 @@ TEST(Occluders, scale_and_distance_from_the_origin_do_not_matter) {
         const Vec3 far = Vec3(3e4, -7e4, 1e4) * scale;
         std::vector<Body> bodies{level_square(1.0, 0.0), level_square(4.0, -1.0, true)};
         for (Body& body : bodies)
-            for (Vec3& x : body.points)
-                x = scale * x + far;
+            for (Vec3& x : body.points) x = scale * x + far;
         const Occluders occluders(bodies);
         for (const Segment& s : random_segments(2000, 3.0, -1.0, 1.0, 29)) {
             const Vec3 middle = 0.5 * (s.from + s.to);

@@ -6,7 +6,8 @@
 namespace kinelux::test {
 
 /// Two triangles over the parallelogram at `corner`; its front is edge_u x edge_v.
-inline visibility::Body parallelogram(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v, bool moves = false) {
+inline visibility::Body parallelogram(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v,
+                                      bool moves = false) {
     visibility::Body body;
     body.points = {corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
     body.triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export_frames.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "geometry/pose.h"
+#include "io/write_view.h"
+
+namespace kinelux::stages {
+
+std::set<std::uint32_t> exported_frames(const model::Scene& scene, const model::Solution& solution,
+                                        const std::optional<cli::FrameRange>& range) {
+    std::set<std::uint32_t> frames;
+    for (const model::FrameSolution& frame : solution.frames) {
+        const auto& named = scene.exported.frames;
+        const bool wanted = !named || std::find(named->begin(), named->end(), frame.frame) != named->end();
+        if (wanted && (!range || range->contains(frame.frame))) frames.insert(frame.frame);
+    }
+    if (frames.empty())
+        throw core::OptionError(
+            "no frame to export: the solution, the scene's [export] and --frames have none in common");
+    return frames;
+}
+
+Exported export_frames(LightCase& light, const model::Solution& solution, const model::DisplayMesh& mesh,
+                       const std::set<std::uint32_t>& written, const sample::DirectLightOptions& direct,
+                       const io::CaseFolder& folder) {
+    Exported exported;
+    const sample::SurfaceSampler sampler(mesh, light.elements, light.scene, light.occluders.end_offset());
+    io::ViewWriter writer(folder.path(), mesh, light.scene);
+    core::Progress progress("export", solution.frames.size());
+    for (const model::FrameSolution& frame : solution.frames) {
+        cli::Stage::throw_if_stopped();
+        const auto poses = geometry::object_poses(light.scene, frame.time_s);
+        light.occluders.set_poses(poses);
+        if (written.contains(frame.frame)) {
+            writer.write_frame(frame.frame,
+                               sampler.fields(solution.layout, frame, poses, light.occluders, direct));
+            ++exported.frames;
+        }
+        const auto readings = sample::meter_readings(light.elements, light.scene, solution.layout, frame,
+                                                     poses, light.occluders, direct);
+        exported.meters.insert(exported.meters.end(), readings.begin(), readings.end());
+        progress.advance(1, fmt::format("frame {}", frame.frame));
+    }
+    writer.finish();
+    return exported;
+}
+
+} // namespace kinelux::stages

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "cli/option_table.h"
+#include "io/case_folder.h"
+#include "light_case.h"
+#include "model/solution.h"
+#include "model/surface_field.h"
+#include "sample/sampler.h"
+
+namespace kinelux::stages {
+
+/// Frames of a solution to write: those the scene names (nothing: all), inside a range (nothing: all).
+/// @throws OptionError  none is left
+std::set<std::uint32_t> exported_frames(const model::Scene& scene, const model::Solution& solution,
+                                        const std::optional<cli::FrameRange>& range);
+
+struct Exported {
+    std::uint64_t frames = 0;
+    std::vector<model::MeterReading> meters; ///< of all frames of the solution
+};
+
+/// Writes view.pvd, the frames and view.py; reads the meters of every frame.
+Exported export_frames(LightCase& light, const model::Solution& solution, const model::DisplayMesh& mesh,
+                       const std::set<std::uint32_t>& written, const sample::DirectLightOptions& direct,
+                       const io::CaseFolder& folder);
+
+} // namespace kinelux::stages

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light_case.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "motion/frame_blocks.h"
+#include "solve/animation.h"
+
+namespace kinelux::stages {
+
+kernel::TransportOptions LightCase::transport_options(std::uint64_t seed) const {
+    kernel::TransportOptions options = coefficients::transport_options_for(scene, plan);
+    options.seed = seed;
+    return options;
+}
+
+std::vector<double> LightCase::areas() const {
+    std::vector<double> areas;
+    for (const geometry::ElementShape& element : elements) areas.push_back(element.area);
+    return areas;
+}
+
+LightCase read_light_case(const io::CaseFolder& folder) {
+    model::Scene scene = folder.read_scene();
+    model::PatchSet patches = folder.read_patches();
+    model::ClusterTree tree = folder.read_clusters();
+    model::Plan plan = folder.read_plan();
+    auto elements = geometry::element_shapes(patches, tree, plan.degree, plan.cluster_degree);
+    visibility::Occluders occluders(visibility::bodies_of(patches, scene));
+    return {.scene = std::move(scene),
+            .patches = std::move(patches),
+            .tree = std::move(tree),
+            .plan = std::move(plan),
+            .elements = std::move(elements),
+            .occluders = std::move(occluders)};
+}
+
+std::vector<std::uint32_t> frames_of(const model::Scene& scene, const std::optional<cli::FrameRange>& range) {
+    std::vector<std::uint32_t> frames;
+    for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame)
+        if (!range || range->contains(frame)) frames.push_back(frame);
+    if (frames.empty())
+        throw core::OptionError(fmt::format("--frames {},{}: the scene has frames 0 to {}", range->first,
+                                            range->last, scene.time.frames - 1));
+    return frames;
+}
+
+Groups groups_of(const LightCase& light, GroupBy by) {
+    Groups groups;
+    if (by == GroupBy::Object)
+        for (const model::Object& object : light.scene.objects) groups.names.push_back(object.name);
+    else {
+        for (std::size_t p = 0; p < light.patches.patches.size(); ++p)
+            groups.names.push_back(fmt::format("patch {}", p));
+        for (std::size_t c = 0; c < light.tree.clusters.size(); ++c)
+            groups.names.push_back(fmt::format("cluster {}", c));
+    }
+    for (const model::Element& element : light.tree.elements) {
+        if (by == GroupBy::Object)
+            groups.group_of.push_back(element.object.value);
+        else if (element.patch)
+            groups.group_of.push_back(element.patch->value);
+        else
+            groups.group_of.push_back(static_cast<std::uint32_t>(light.patches.patches.size()) +
+                                      element.cluster->value);
+    }
+    return groups;
+}
+
+std::vector<double> row_sums(std::span<const coefficients::FormFactor> factors, std::size_t groups) {
+    std::vector<double> sums(groups, 0.0);
+    for (const coefficients::FormFactor& factor : factors) sums[factor.from] += factor.value;
+    return sums;
+}
+
+model::Coefficients coefficients_at(model::Coefficients coefficients, LightCase& light, std::uint32_t frame,
+                                    std::uint64_t seed) {
+    motion::FrameUpdater updater(coefficients, light.elements, light.scene, light.plan, light.occluders,
+                                 light.transport_options(seed));
+    coefficients.static_blocks =
+        solve::blocks_at(coefficients.static_blocks, updater.at(light.scene.time.time_of_frame(frame)));
+    return coefficients;
+}
+
+} // namespace kinelux::stages

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "kernel/polygon_irradiance.h"
+#include "sample/frames.h"
+#include "sample/sampler.h"
+#include "support/shapes.h"
+
+namespace kinelux::sample {
+namespace {
+
+std::optional<model::MeterReading> find(const std::vector<model::MeterReading>& readings,
+                                        const std::string& meter, const std::string& quantity) {
+    for (const model::MeterReading& reading : readings)
+        if (reading.meter == meter && reading.quantity == quantity) return reading;
+    return std::nullopt;
+}
+
+std::vector<model::MeterReading> read(const model::PatchSet& set, const model::Scene& scene, int n,
+                                      double direct, double indirect) {
+    const auto shapes = support::shapes_of(set, n, 1);
+    const auto occluders = support::occluders_of(set, scene);
+    const std::vector<geometry::Pose> poses(scene.objects.size());
+    return meter_readings(shapes, scene, test::layout_of(shapes),
+                          test::uniform_frame(shapes, scene, direct, indirect), poses, occluders, {});
+}
+
+TEST(Meters, object_readings_are_means_and_integrals_over_the_area) {
+    model::Scene scene = support::plain_scene(1, 0.5, 2.0);
+    scene.quantity = model::Quantity::Photometric;
+    const model::PatchSet set{support::box({0, 0, 0}, {1, 2, 3}, support::Facing::Inwards), {}};
+    const auto readings = read(set, scene, 2, 1.0, 3.0);
+    const double area = 22.0;
+    for (const auto& [quantity, value, unit, error] :
+         {std::tuple("radiosity", 4.0, "lm/m2", 0.125), std::tuple("irradiance", 4.0, "lx", 0.25),
+          std::tuple("flux", 4.0 * area, "lm", 0.125 * area),
+          std::tuple("emitted flux", 2.0 * area, "lm", 0.0)}) {
+        const auto reading = find(readings, "object0", quantity);
+        ASSERT_TRUE(reading) << quantity;
+        EXPECT_NEAR(reading->value, value, 1e-12 * area);
+        EXPECT_EQ(reading->unit, unit);
+        EXPECT_EQ(reading->channel, "grey");
+        EXPECT_NEAR(reading->error_estimate, error, 1e-6);
+    }
+}
+
+TEST(Meters, a_sensor_amid_uniform_walls_reads_their_radiosity) {
+    // Whatever the sensor's place and direction, the walls fill its view: E = B.
+    model::Scene scene = support::plain_scene(1, 0.5, 0.0);
+    const model::PatchSet set{support::box({0, 0, 0}, {1, 2, 3}, support::Facing::Inwards), {}};
+    scene.meters = {{"up", {0.1, 0.1, 0.7}, {0.8, 0, 0}, {0, 1.8, 0}, 3, 4},
+                    {"skew", {0.3, 0.5, 1.0}, {0.3, 0.1, 0.2}, {-0.1, 0.4, 0.3}, 2, 2},
+                    {"near a wall", {0.1, 0.1, 0.02}, {0, 0.5, 0}, {0.5, 0, 0}, 2, 2}};
+    const auto readings = read(set, scene, 3, 0.0, 4.0);
+    for (const std::string meter : {"up", "skew", "near a wall"})
+        for (const std::string quantity : {"mean irradiance", "least irradiance", "greatest irradiance"}) {
+            const auto reading = find(readings, meter, quantity);
+            ASSERT_TRUE(reading);
+            EXPECT_NEAR(reading->value, 2.0, 0.02) << meter << " " << quantity;
+            EXPECT_NEAR(reading->error_estimate, 0.125, 0.002);
+        }
+    EXPECT_TRUE(find(readings, "up[2,3]", "irradiance"));
+    EXPECT_FALSE(find(readings, "up[3,3]", "irradiance"));
+}
+
+TEST(Meters, a_sensor_reads_lamps_in_closed_form_and_not_what_they_emit_twice) {
+    model::Scene scene = support::plain_scene(1, 0.5, 0.0);
+    scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});
+    const model::PatchSet set{
+        {support::rectangle({-0.5, -0.5, 1}, {0, 1, 0}, {1, 0, 0}, ObjectId(0), MaterialId(1))}, {}};
+    scene.meters = {{"point", {-0.1, -0.1, 0}, {0.2, 0, 0}, {0, 0.2, 0}, 1, 1}};
+    const std::array<Vec3, 4> lamp{Vec3(-0.5, -0.5, 1), Vec3(-0.5, 0.5, 1), Vec3(0.5, 0.5, 1),
+                                   Vec3(0.5, -0.5, 1)};
+    const auto reading = find(read(set, scene, 2, 0.0, 4.0), "point[0,0]", "irradiance");
+    ASSERT_TRUE(reading);
+    EXPECT_NEAR(reading->value, 5.0 * kernel::point_to_polygon({0, 0, 0}, {0, 0, 1}, lamp), 1e-12);
+}
+
+TEST(Meters, a_screen_between_wall_and_sensor_hides_the_wall) {
+    model::Scene scene = support::plain_scene(2, 0.5, 0.0);
+    scene.materials.push_back({"black", {0.0}, {0.0}, model::Sides::Front});
+    model::PatchSet set{{support::rectangle({-1, -1, 2}, {0, 2, 0}, {2, 0, 0})}, {}};
+    scene.meters = {{"point", {-0.1, -0.1, 0}, {0.2, 0, 0}, {0, 0.2, 0}, 1, 1}};
+    EXPECT_GT(find(read(set, scene, 2, 0.0, 4.0), "point[0,0]", "irradiance")->value, 0.1);
+    set.patches.push_back(support::rectangle({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, ObjectId(1), MaterialId(1)));
+    EXPECT_EQ(find(read(set, scene, 2, 0.0, 4.0), "point[0,0]", "irradiance")->value, 0.0);
+}
+
+} // namespace
+} // namespace kinelux::sample

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/animation.h"
+
+#include <gtest/gtest.h>
+
+#include "coefficients/coefficients.h"
+#include "support/shapes.h"
+
+namespace kinelux {
+namespace {
+
+/// A closed room whose ceiling shines, in channels of one colour.
+struct Room {
+    model::Scene scene;
+    model::PatchSet patches;
+    model::ClusterTree tree;
+    model::Plan plan;
+
+    Room() {
+        scene.channels = {"a", "b"};
+        scene.materials = {{.name = "wall", .reflectance = {0.5, 0.5}, .exitance = {0.0, 0.0}},
+                           {.name = "lamp", .reflectance = {0.2, 0.2}, .exitance = {2.0, 6.0}}};
+        scene.objects.resize(1);
+        patches.patches = support::box(Vec3(0.0), Vec3(1.0), support::Facing::Inwards);
+        patches.patches[1].material = MaterialId(1);
+        tree = support::uniform_elements(patches, 2);
+        plan.degree = 1;
+        plan.bounces = 10;
+        plan.static_occlusion = plan.moving_occlusion = false;
+    }
+
+    model::Solution solve() const {
+        const auto shapes = geometry::element_shapes(patches, tree, plan.degree, 0);
+        visibility::Occluders occluders(visibility::bodies_of(patches, scene));
+        const auto options = coefficients::transport_options_for(scene, plan);
+        const auto blocks = coefficients::compute_coefficients(shapes, scene, plan, occluders, options, 1e6);
+        motion::FrameUpdater updater(blocks, shapes, scene, plan, occluders, options);
+        std::vector<double> areas;
+        for (const auto& shape : shapes) areas.push_back(shape.area);
+        const std::vector<std::uint32_t> frames{0};
+        return solve::solve_animation({scene, plan, blocks, tree.elements, areas}, updater, frames, {},
+                                      [](const model::FrameSolution&) {});
+    }
+};
+
+TEST(Animation, one_solved_channel_scaled_equals_all_channels_solved) {
+    Room room;
+    const auto all = room.solve();
+    room.plan.single_channel = true;
+    const auto one = room.solve();
+    ASSERT_EQ(one.channels, 2u);
+    ASSERT_EQ(one.frames[0].radiosity.size(), all.frames[0].radiosity.size());
+    for (std::size_t k = 0; k < all.frames[0].radiosity.size(); ++k)
+        EXPECT_NEAR(one.frames[0].radiosity[k], all.frames[0].radiosity[k], 1e-3);
+}
+
+TEST(Animation, without_bounces_radiosity_is_direct_light_reflected_once) {
+    Room room;
+    room.plan.bounces = 0;
+    const auto frame = room.solve().frames[0];
+    for (const double value : frame.irradiance_indirect) EXPECT_EQ(value, 0.0);
+    // Element 0 lies on the floor; its first function is constant.
+    EXPECT_GT(frame.irradiance_direct[0], 0.0);
+    EXPECT_DOUBLE_EQ(frame.radiosity[0], 0.5 * frame.irradiance_direct[0]);
+}
+
+TEST(Animation, error_estimate_is_small_and_positive_where_blocks_are_good) {
+    const auto frame = Room().solve().frames[0];
+    EXPECT_GT(frame.error_estimate, 0.0);
+    EXPECT_LT(frame.error_estimate, 0.05);
+    EXPECT_EQ(frame.element_error.size(), 24u);
+    EXPECT_TRUE(frame.converged);
+}
+
+TEST(BlocksAt, frame_blocks_take_the_place_of_static_ones_and_missing_ones_are_zero) {
+    const model::BlockSet fixed{.entries = {{0, 1, 0, 0.1f}, {0, 2, 1, 0.2f}, {1, 2, 2, 0.3f}},
+                                .values = {1.0f, 2.0f, 3.0f}};
+    motion::FrameBlocks frame;
+    frame.pairs = {{0, 0}, {0, 2}, {1, 2}};
+    frame.blocks = {.entries = {{0, 0, 0, 0.0f}, {1, 2, 1, 0.0f}}, .values = {7.0f, 8.0f}};
+    const model::BlockSet now = solve::blocks_at(fixed, frame);
+    ASSERT_EQ(now.entries.size(), 3u);
+    EXPECT_EQ(now.entries[0].j, 0u);
+    EXPECT_EQ(now.values[now.entries[0].offset], 7.0f);
+    EXPECT_EQ(now.values[now.entries[1].offset], 1.0f);
+    EXPECT_EQ(now.values[now.entries[2].offset], 8.0f);
+}
+
+TEST(IrradianceErrors, follow_block_errors_and_brightness) {
+    const model::UnknownLayout layout{{0, 1, 2}};
+    const std::vector<model::BlockEntry> entries{{0, 1, 0, 0.5f}};
+    const std::vector<double> areas{1.0, 4.0}, exitance{3.0, 0.0};
+    model::FrameSolution frame;
+    frame.radiosity = {3.0, 2.0};
+    const auto errors = solve::irradiance_errors(layout, entries, areas, exitance, frame, 1);
+    EXPECT_FLOAT_EQ(errors[0], 1.0f);  // 0.5 * 2 / sqrt(1)
+    EXPECT_FLOAT_EQ(errors[1], 0.75f); // 0.5 * 3 / sqrt(4)
+}
+
+} // namespace
+} // namespace kinelux
