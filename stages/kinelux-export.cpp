@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
+#include <optional>
 
 #include "cli/stage.h"
-#include "core/log.h"
 #include "export_frames.h"
 #include "io/write_view.h"
 #include "light_case.h"

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "cli/stage.h"
-#include "core/log.h"
 #include "reports.h"
 #include "sensors.h"
 
@@ -18,7 +14,7 @@ int main(int argc, char** argv) {
          .inputs = {"scene.json", "view.pvd", "frames"},
          .outputs = {"reference.csv"}});
     const std::uint64_t& seed = stage.add_seed();
-    const auto& range = stage.add_frames("first and last exported frame that are judged");
+    const auto& range = stage.add_frames("first and last exported frame that are judged", "the first");
     stages::SensorRequest request{.count = 400, .file = {}, .trace = {.paths = 16384}};
     stage.options().add({.member = &request.count,
                          .flags = "--points",

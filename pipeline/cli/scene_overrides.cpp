@@ -7,7 +7,7 @@ SceneOverrides::SceneOverrides(OptionTable& table) {
     table.add({.member = &output,
                .flags = "-o,--output",
                .help = "folder of the case",
-               .unset = "<scene stem>.case in the current folder",
+               .unset = "name of the scene with .case, in the current folder",
                .decides = Decides::Manners});
     table.add({.member = &accuracy,
                .flags = "--accuracy",

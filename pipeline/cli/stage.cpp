@@ -72,8 +72,8 @@ std::uint64_t& Stage::add_seed() {
     return seed_;
 }
 
-std::optional<FrameRange>& Stage::add_frames(const std::string& help) {
-    options_.add({.member = &frames_, .flags = "--frames", .help = help, .unset = "all"});
+std::optional<FrameRange>& Stage::add_frames(const std::string& help, const std::string& unset) {
+    options_.add({.member = &frames_, .flags = "--frames", .help = help, .unset = unset});
     return frames_;
 }
 

@@ -36,8 +36,9 @@ public:
     explicit Stage(StageFiles files);
 
     OptionTable& options() { return options_; }
-    std::uint64_t& add_seed();                                      ///< adds --seed
-    std::optional<FrameRange>& add_frames(const std::string& help); ///< adds --frames
+    std::uint64_t& add_seed(); ///< adds --seed
+    std::optional<FrameRange>& add_frames(const std::string& help,
+                                          const std::string& unset = "all"); ///< adds --frames
 
     /// The whole program: parses, prints the options, works, writes the record, reports. @return  exit code
     int run(int argc, char** argv, const std::function<core::ExitCode(Stage&)>& work);

@@ -206,7 +206,7 @@ NearLimits near_limits_for(double tolerance) {
 class NearPair {
 public:
     NearPair(const ElementShape& a, const ElementShape& b, const TransportOptions& options, PairSight& sight)
-        : a_(a), b_(b), sight_(sight), limits_(near_limits_for(options.tolerance)), gathered_(b.basis.size()),
+        : a_(a), b_(b), sight_(sight), limits_(near_limits_for(tolerance_for(options, sight))), gathered_(b.basis.size()),
           outer_phi_(a.basis.size()) {
         for (const Facet& facet : b.facets)
             parts_.push_back(make_part(facet));
@@ -218,6 +218,12 @@ public:
     }
 
 private:
+    // Where rays decide, their sampling error is the larger one: a finer quadrature would only cost rays.
+    static double tolerance_for(const TransportOptions& options, const PairSight& sight) {
+        return sight.sight() == Sight::Partial ? std::max(options.tolerance, partial_tolerance) : options.tolerance;
+    }
+
+    static constexpr double partial_tolerance = 1e-2;
     static constexpr double outer_ratio = 1.0; ///< largest edge / distance without refinement
     static constexpr double inner_ratio = 0.7;
     static constexpr double point_ratio = 0.1; ///< below it one node is enough

@@ -16,15 +16,17 @@ using Triangle = std::array<std::uint32_t, 3>; ///< corner indices, counter-cloc
 /// An indexed triangle soup in double precision; the outside form of all geometry. The front of a face is the side its
 /// normal (p1 - p0) x (p2 - p0) points to.
 struct Mesh {
-    std::vector<Vec3> points;             ///< [m]
+    std::vector<Vec3> points; ///< [m]
     std::vector<Triangle> triangles;
-    std::vector<MaterialId> materials;    ///< one per triangle
-    std::vector<std::uint8_t> two_sided;  ///< one per triangle, 1 = both sides exchange light; empty until cleaned
-    std::vector<std::uint32_t> source_faces; ///< one per triangle: number of the face in the file it came from
+    std::vector<MaterialId> materials; ///< one per triangle
+    std::vector<std::uint8_t>
+        two_sided; ///< one per triangle, 1 = both sides exchange light; empty until cleaned
+    std::vector<std::uint32_t>
+        source_faces; ///< one per triangle: number of the face in the file it came from
 };
 
-double area(const Mesh& mesh);                      ///< [m2]
-double signed_volume(const Mesh& mesh);             ///< [m3]; meaningful where the mesh is closed
+double area(const Mesh& mesh);                                ///< [m2]
+double signed_volume(const Mesh& mesh);                       ///< [m3]; meaningful where the mesh is closed
 Vec3 triangle_normal(const Mesh& mesh, std::size_t triangle); ///< unit; (0,0,0) for a face without area
 
 /// @param where  starts the message, e.g. the object's name

@@ -39,8 +39,8 @@ enum class Interpolation : std::uint8_t { Step, Linear, Cubic };
 /// One stop of a motion; the pose of a body relative to its rest position.
 struct Keyframe {
     double time_s = 0.0;
-    Vec3 translation{0.0};                 ///< [m]
-    Quat rotation{1.0, 0.0, 0.0, 0.0};     ///< about the motion's pivot
+    Vec3 translation{0.0};             ///< [m]
+    Quat rotation{1.0, 0.0, 0.0, 0.0}; ///< about the motion's pivot
 };
 
 /// A rigid path in time. Before the first and after the last keyframe the body rests.
@@ -68,17 +68,17 @@ struct TimeAxis {
 };
 
 struct Accuracy {
-    double target = 0.03;          ///< relative L2 error of radiosity per frame asked for [1], in (0, 1)
-    std::optional<int> degree;     ///< of the polynomial bases, 0..3; unset: chosen from the target
+    double target = 0.03;               ///< relative L2 error of radiosity per frame asked for [1], in (0, 1)
+    std::optional<int> degree;          ///< of the polynomial bases, 0..3; unset: chosen from the target
     std::optional<double> element_size; ///< largest edge of an element [m]; unset: chosen from the target
 };
 
 /// A rectangle of sensor points, for meters.csv.
 struct GridMeter {
     std::string name;
-    Vec3 origin{0.0};                 ///< corner [m]
-    Vec3 edge_u{1.0, 0.0, 0.0};       ///< [m]
-    Vec3 edge_v{0.0, 1.0, 0.0};       ///< [m]; sensors face edge_u x edge_v
+    Vec3 origin{0.0};                       ///< corner [m]
+    Vec3 edge_u{1.0, 0.0, 0.0};             ///< [m]
+    Vec3 edge_v{0.0, 1.0, 0.0};             ///< [m]; sensors face edge_u x edge_v
     std::uint32_t count_u = 1, count_v = 1; ///< points at cell centres
 };
 
@@ -92,14 +92,15 @@ struct View {
 
 /// A switch that the user may take out of the plan's hands; unset: the plan decides.
 struct EffectOverrides {
-    std::optional<bool> interreflection;    ///< false: direct light only
-    std::optional<bool> static_occlusion;   ///< false: no shadows between bodies at rest
-    std::optional<bool> moving_occlusion;   ///< false: bodies that move cast no shadow
+    std::optional<bool> interreflection;  ///< false: direct light only
+    std::optional<bool> static_occlusion; ///< false: no shadows between bodies at rest
+    std::optional<bool> moving_occlusion; ///< false: bodies that move cast no shadow
 };
 
 /// What the export stage writes.
 struct ExportOptions {
-    std::optional<double> cell_size; ///< largest edge of a displayed cell [m]; unset: chosen from the elements
+    std::optional<double>
+        cell_size; ///< largest edge of a displayed cell [m]; unset: chosen from the elements
     std::optional<std::vector<std::uint32_t>> frames; ///< numbers of the frames written; unset: all
 };
 

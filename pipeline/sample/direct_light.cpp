@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -12,24 +11,77 @@ namespace kinelux::sample {
 
 namespace {
 
+constexpr std::size_t max_corners =
+    32; ///< of a source's outline that are looked at; others have too many to be seen
+constexpr double corner_inset = 1e-2; ///< of the way to the panel's centre: rays must not meet in its corners
+
 /// Shadow rays of one receiver and what each stands for; kept by a thread between receivers to spare allocations.
 struct Rays {
     std::vector<visibility::Segment> segments;
     std::vector<double> weights;
     std::vector<std::uint8_t> blocked;
     double visible = 0.0, all = 0.0; ///< sums of weights of the rays cast so far
+    std::size_t hidden = 0, cast = 0;
 
-    void cast(const visibility::Occluders& occluders) {
+    void reset() {
+        visible = all = 0.0;
+        hidden = cast = 0;
+    }
+    void add(const Receiver& receiver, const Vec3& light, double weight) {
+        segments.push_back({receiver.position, light});
+        weights.push_back(weight);
+    }
+    void trace(const visibility::Occluders& occluders) {
         blocked.resize(segments.size());
         occluders.occluded(segments, blocked);
         for (std::size_t i = 0; i < segments.size(); ++i) {
             all += weights[i];
             visible += blocked[i] != 0 ? 0.0 : weights[i];
+            hidden += blocked[i];
         }
+        cast += segments.size();
         segments.clear();
         weights.clear();
     }
+    bool agree() const { return all > 0.0 && (hidden == 0 || hidden == cast); }
 };
+
+// cos+ cos'+ / (pi r^2) between a receiver and a point of a panel.
+double exchange(const Receiver& receiver, const Vec3& light, const LightPanel& panel) {
+    const Vec3 way = light - receiver.position;
+    const double r2 = glm::dot(way, way);
+    const double here = glm::dot(way, receiver.normal), there = -glm::dot(way, panel.normal);
+    return here > 0.0 && there > 0.0 ? here * there / (std::numbers::pi * r2 * r2) : 0.0;
+}
+
+// Samples are drawn from the panels in proportion to what each sends unoccluded, evenly on its area, and weighted with
+// the kernel over its mean on the panel: the weights' expectation is 1, and the ratio of sums is exact without shadow.
+void add_sample(const Receiver& receiver, std::span<const LightPanel> panels,
+                std::span<const double> cumulative_factors, Vec2 square, Rays& rays) {
+    const double target = square.x * cumulative_factors.back();
+    const auto found = std::upper_bound(cumulative_factors.begin(), cumulative_factors.end() - 1, target);
+    const auto p = static_cast<std::size_t>(found - cumulative_factors.begin());
+    const double before = p > 0 ? cumulative_factors[p - 1] : 0.0;
+    const double factor = cumulative_factors[p] - before;
+    if (!(factor > 0.0)) return;
+    square.x = std::clamp((target - before) / factor, 0.0, 1.0);
+    const Vec3 light = panels[p].point(square);
+    const double kernel = exchange(receiver, light, panels[p]);
+    if (kernel > 0.0) rays.add(receiver, light, kernel * panels[p].area() / factor);
+}
+
+// A straight shadow edge that cuts a convex source cuts off one of its corners: rays to the corners find most of the
+// penumbra that few random rays miss. They only tell whether all is alike and have no weight.
+void add_corners(const Receiver& receiver, std::span<const LightPanel> panels, Rays& rays) {
+    std::size_t corners = 0;
+    for (const LightPanel& panel : panels) corners += panel.outline.size();
+    if (corners > max_corners) return;
+    for (const LightPanel& panel : panels)
+        for (const LightPanel::Edge& edge : panel.outline) {
+            const Vec3 light = edge.from + corner_inset * (panel.centre - edge.from);
+            if (exchange(receiver, light, panel) > 0.0) rays.add(receiver, light, 0.0);
+        }
+}
 
 } // namespace
 
@@ -44,38 +96,21 @@ DirectLight::DirectLight(std::span<const geometry::ElementShape> sources, const 
         sources_.push_back({light_panels(elements), scene.materials[owner.second.value].exitance});
 }
 
-// Samples are drawn from the panels in proportion to what each sends unoccluded, evenly on its area, and weighted with
-// the kernel over its mean on the panel: the weights' expectation is 1, and the ratio of sums is exact without shadow.
 double DirectLight::visible_share(const Receiver& receiver, const Source& source,
                                   std::span<const double> cumulative_factors, std::uint64_t seed) const {
     thread_local Rays rays;
-    rays.visible = rays.all = 0.0;
-    const double total = cumulative_factors.back();
+    rays.reset();
     const auto probes = static_cast<std::uint32_t>(std::max(options_.probe_rays, 1));
     const auto limit = std::max(static_cast<std::uint32_t>(std::max(options_.shadow_rays, 1)), probes);
-    for (std::uint32_t i = 0; i < limit; ++i) {
-        if (i == probes) {
-            rays.cast(occluders_);
-            if (rays.all > 0.0 && (rays.visible == 0.0 || rays.visible == rays.all)) break;
-        }
-        Vec2 square = core::sobol_2d(i, seed);
-        const double target = square.x * total;
-        const auto found = std::upper_bound(cumulative_factors.begin(), cumulative_factors.end() - 1, target);
-        const auto p = static_cast<std::size_t>(found - cumulative_factors.begin());
-        const double before = p > 0 ? cumulative_factors[p - 1] : 0.0;
-        const double factor = cumulative_factors[p] - before;
-        if (!(factor > 0.0)) continue;
-        square.x = std::clamp((target - before) / factor, 0.0, 1.0);
-        const LightPanel& panel = source.panels[p];
-        const Vec3 light = panel.point(square);
-        const Vec3 way = light - receiver.position;
-        const double r2 = glm::dot(way, way);
-        const double here = glm::dot(way, receiver.normal), there = -glm::dot(way, panel.normal);
-        if (!(here > 0.0) || !(there > 0.0)) continue; // the part of the source below the horizon
-        rays.segments.push_back({receiver.position, light});
-        rays.weights.push_back(here * there * panel.area() / (std::numbers::pi * r2 * r2 * factor));
+    add_corners(receiver, source.panels, rays);
+    for (std::uint32_t i = 0; i < probes; ++i)
+        add_sample(receiver, source.panels, cumulative_factors, core::sobol_2d(i, seed), rays);
+    rays.trace(occluders_);
+    if (!rays.agree()) {
+        for (std::uint32_t i = probes; i < limit; ++i)
+            add_sample(receiver, source.panels, cumulative_factors, core::sobol_2d(i, seed), rays);
+        rays.trace(occluders_);
     }
-    rays.cast(occluders_);
     return rays.all > 0.0 ? rays.visible / rays.all : 1.0;
 }
 

@@ -51,6 +51,21 @@ const geometry::Facet& facet_at(const geometry::ElementShape& element, const Vec
     return *std::min_element(element.facets.begin(), element.facets.end(), better);
 }
 
+struct Plane {
+    Vec3 point, normal;
+};
+
+// How far a receiver must go along its normal to stand this high above all planes.
+double lift_above(std::span<const Plane> planes, const Receiver& receiver, double clearance) {
+    double lift = 0.0;
+    for (const Plane& plane : planes) {
+        const double height = glm::dot(plane.normal, receiver.position - plane.point);
+        lift = std::max(lift, (clearance - height) /
+                                  std::max(glm::dot(plane.normal, receiver.normal), least_cosine));
+    }
+    return lift;
+}
+
 struct Cell {
     std::int64_t x, y, z;
     bool operator==(const Cell&) const = default;
@@ -137,7 +152,8 @@ SurfaceSampler::SurfaceSampler(const model::DisplayMesh& mesh,
 }
 
 // Shadow rays start a little inside the triangles around the point, so that a corner of a wall is not on both sides of
-// the next one, and, on a bent surface, above all of these triangles' planes, so that none of them is in the way.
+// the next one, and, on a bent surface, above the planes of these triangles and of the facets of their elements, which
+// are what casts shadows: so none of them is in the way.
 void SurfaceSampler::place_receivers(const Incidence& around, double clearance) {
     receivers_.resize(mesh_.points.size());
     core::parallel_for(mesh_.points.size(), [&](std::size_t p) {
@@ -145,23 +161,23 @@ void SurfaceSampler::place_receivers(const Incidence& around, double clearance) 
         Receiver& receiver = receivers_[p];
         receiver = {x, normal};
         if (around[p].empty()) return;
-        std::vector<Vec3> normals;
+        std::vector<Plane> planes;
         Vec3 middle(0.0);
         for (const std::uint32_t t : around[p]) {
             const model::Triangle& c = mesh_.triangles[t];
             const Vec3 a = mesh_.points[c[0]], b = mesh_.points[c[1]] - a, d = mesh_.points[c[2]] - a;
             middle += a + (b + d) / 3.0;
             const Vec3 cross = glm::cross(b, d);
-            if (glm::length(cross) > 0.0) normals.push_back(glm::normalize(cross));
+            if (glm::length(cross) > 0.0) planes.push_back({x, glm::normalize(cross)});
         }
         receiver.position = x + nudge * (middle / static_cast<double>(around[p].size()) - x);
-        const auto is_bent = [&](const Vec3& n) { return glm::dot(n, normal) < 1.0 - bent; };
-        if (std::none_of(normals.begin(), normals.end(), is_bent)) return;
-        double lift = 0.0;
-        for (const Vec3& n : normals)
-            lift = std::max(lift, (clearance - glm::dot(n, receiver.position - x)) /
-                                      std::max(glm::dot(n, normal), least_cosine));
-        receiver.position += lift * normal;
+        const auto is_bent = [&](const Plane& plane) { return glm::dot(plane.normal, normal) < 1.0 - bent; };
+        if (std::none_of(planes.begin(), planes.end(), is_bent)) return;
+        for (const std::uint32_t t : around[p]) {
+            const geometry::Facet& facet = facet_at(elements_[mesh_.elements[t].value], receiver.position);
+            planes.push_back({facet.corners[0], facet.normal});
+        }
+        receiver.position += lift_above(planes, receiver, clearance) * normal;
     });
 }
 

@@ -16,7 +16,7 @@
 namespace kinelux::sample {
 
 struct DirectLightOptions {
-    int probe_rays = 16;   ///< per receiver and source; all alike = done, 4..256
+    int probe_rays = 16;   ///< per receiver and source, besides its corners; all alike = done, 4..256
     int shadow_rays = 256; ///< per receiver and source in penumbra, >= probe_rays, up to 4096
     std::uint64_t seed = 1;
 };

@@ -68,8 +68,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// The occluding triangles of the fitted scene, one body per object of the scene, in order.
+/// The occluding triangles of the fitted scene, one body per object of the scene, in order. Right where all patches are
+/// plane; the triangles of a curved patch are chords that may hide finer elements on its hollow side.
 std::vector<Body> bodies_of(const model::PatchSet& patches, const model::Scene& scene);
+/// The same with the elements' own facets on curved patches, so that no element hides behind another chord of its patch.
+std::vector<Body> bodies_of(const model::PatchSet& patches, const model::ClusterTree& tree,
+                            const model::Scene& scene);
 /// The same of the scene's own meshes, unfitted.
 std::vector<Body> bodies_of(const model::Scene& scene);
 

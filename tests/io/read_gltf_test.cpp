@@ -21,25 +21,25 @@ using support::put_bytes;
 class ReadGltfTest : public testing::Test {
 protected:
     // A triangle in the xy plane as mesh 0 of every file.
-    ReadGltfTest() { positions_ = writer_.add({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3"); }
+    ReadGltfTest() { positions = writer.add({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3"); }
 
     std::string meshes(const std::string& more = "") const {
         return "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
                "\"POSITION\":" +
-               std::to_string(positions_) + "}" + more + "}]}]";
+               std::to_string(positions) + "}" + more + "}]}]";
     }
     ImportedMeshes read(const std::string& rest) const {
-        const auto file = folder_.path() / "scene.glb";
-        put_bytes(file, writer_.glb(rest));
+        const auto file = folder.path() / "scene.glb";
+        put_bytes(file, writer.glb(rest));
         return read_mesh(file, 3);
     }
     static void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-6) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance);
     }
 
-    support::TemporaryFolder folder_;
-    GltfWriter writer_;
-    int positions_ = 0;
+    support::TemporaryFolder folder;
+    GltfWriter writer;
+    int positions = 0;
 };
 
 TEST_F(ReadGltfTest, node_transforms_apply_and_a_mirrored_face_keeps_its_front) {
@@ -80,10 +80,10 @@ TEST_F(ReadGltfTest, material_of_a_bare_face_is_grey_with_a_note_and_lights_are_
 }
 
 TEST_F(ReadGltfTest, linear_animation_moves_the_whole_subtree_about_the_nodes_origin) {
-    const std::string times = std::to_string(writer_.add({0, 2}, "SCALAR"));
+    const std::string times = std::to_string(writer.add({0, 2}, "SCALAR"));
     const float h = std::sqrt(0.5F);
-    const std::string turn = std::to_string(writer_.add({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
-    const std::string shift = std::to_string(writer_.add({1, 0, 0, 1, 0, 4}, "VEC3"));
+    const std::string turn = std::to_string(writer.add({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
+    const std::string shift = std::to_string(writer.add({1, 0, 0, 1, 0, 4}, "VEC3"));
     const ImportedMeshes read_back =
         read(meshes() + R"(,"nodes":[{"name":"world","translation":[0,5,0],"children":[1]},
         {"name":"door","translation":[1,0,0],"children":[2]},{"name":"leaf","mesh":0,"translation":[3,0,0]}],
@@ -105,9 +105,9 @@ TEST_F(ReadGltfTest, linear_animation_moves_the_whole_subtree_about_the_nodes_or
 }
 
 TEST_F(ReadGltfTest, moving_parent_and_child_follow_their_joint_path_between_the_keys) {
-    const std::string times = std::to_string(writer_.add({0, 1}, "SCALAR"));
+    const std::string times = std::to_string(writer.add({0, 1}, "SCALAR"));
     const float h = std::sqrt(0.5F);
-    const std::string turn = std::to_string(writer_.add({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
+    const std::string turn = std::to_string(writer.add({0, 0, 0, 1, 0, 0, h, h}, "VEC4"));
     const std::string target = R"(,"target":{"path":"rotation","node":)";
     const ImportedMeshes read_back = read(meshes() + R"(,"nodes":[{"name":"upper","children":[1]},
         {"name":"lower","mesh":0,"translation":[2,0,0]}],"animations":[{"samplers":[{"input":)" +
@@ -122,10 +122,10 @@ TEST_F(ReadGltfTest, moving_parent_and_child_follow_their_joint_path_between_the
 }
 
 TEST_F(ReadGltfTest, step_and_cubic_interpolation_survive_and_scale_channels_are_refused_with_a_note) {
-    const std::string times = std::to_string(writer_.add({0, 1}, "SCALAR"));
-    const std::string shift = std::to_string(writer_.add({0, 0, 0, 5, 0, 0}, "VEC3"));
+    const std::string times = std::to_string(writer.add({0, 1}, "SCALAR"));
+    const std::string shift = std::to_string(writer.add({0, 0, 0, 5, 0, 0}, "VEC3"));
     const std::string spline =
-        std::to_string(writer_.add({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0}, "VEC3"));
+        std::to_string(writer.add({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0}, "VEC3"));
     const auto with = [&](const std::string& output, const std::string& mode) {
         return read(meshes() + R"(,"nodes":[{"name":"lift","mesh":0}],"animations":[{"samplers":[{"input":)" +
                     times + R"(,"output":)" + output + R"(,"interpolation":")" + mode + R"("},{"input":)" +
@@ -150,29 +150,29 @@ TEST_F(ReadGltfTest, bad_coordinates_indices_and_circles_are_errors) {
     EXPECT_THROW(read(meshes() + R"(,"nodes":[{"mesh":7}])"), core::FileError);
     EXPECT_THROW(read(meshes(",\"material\":3") + R"(,"nodes":[{"mesh":0}])"), core::FileError);
     EXPECT_THROW(read(meshes() + R"(,"nodes":[{"name":"nothing"}])"), core::GeometryError);
-    const std::string indices = std::to_string(writer_.add(std::vector<std::uint32_t>{0, 1, 3}));
+    const std::string indices = std::to_string(writer.add(std::vector<std::uint32_t>{0, 1, 3}));
     EXPECT_THROW(read(meshes(",\"indices\":" + indices) + R"(,"nodes":[{"mesh":0}])"), core::GeometryError);
-    positions_ = writer_.add({0, 0, 0, 1, std::numeric_limits<float>::quiet_NaN(), 0, 0, 1, 0}, "VEC3");
+    positions = writer.add({0, 0, 0, 1, std::numeric_limits<float>::quiet_NaN(), 0, 0, 1, 0}, "VEC3");
     EXPECT_THROW(read(meshes() + R"(,"nodes":[{"mesh":0}])"), core::GeometryError);
 }
 
 TEST_F(ReadGltfTest, buffer_file_is_read_beside_the_json_and_refused_outside_its_folder) {
-    std::filesystem::create_directory(folder_.path() / "inner");
-    put_bytes(folder_.path() / "inner/data.bin", writer_.bytes());
-    put_bytes(folder_.path() / "data.bin", writer_.bytes());
-    const auto file = folder_.path() / "inner/scene.gltf";
+    std::filesystem::create_directory(folder.path() / "inner");
+    put_bytes(folder.path() / "inner/data.bin", writer.bytes());
+    put_bytes(folder.path() / "data.bin", writer.bytes());
+    const auto file = folder.path() / "inner/scene.gltf";
     const std::string rest = meshes() + R"(,"nodes":[{"mesh":0}])";
-    put_bytes(file, writer_.json(rest, "data.bin"));
+    put_bytes(file, writer.json(rest, "data.bin"));
     EXPECT_EQ(read_mesh(file, 3).objects.size(), 1U);
-    put_bytes(file, writer_.json(rest, "../data.bin"));
+    put_bytes(file, writer.json(rest, "../data.bin"));
     EXPECT_THROW(read_mesh(file, 3), core::FileError);
-    put_bytes(file, writer_.json(rest, "missing.bin"));
+    put_bytes(file, writer.json(rest, "missing.bin"));
     EXPECT_THROW(read_mesh(file, 3), core::FileError);
 }
 
 TEST_F(ReadGltfTest, binary_file_cut_off_at_any_length_is_a_file_error) {
-    const std::string whole = writer_.glb(meshes() + R"(,"nodes":[{"name":"a","mesh":0}])");
-    const auto file = folder_.path() / "cut.glb";
+    const std::string whole = writer.glb(meshes() + R"(,"nodes":[{"name":"a","mesh":0}])");
+    const auto file = folder.path() / "cut.glb";
     for (std::size_t length = 0; length < whole.size(); ++length) {
         put_bytes(file, whole.substr(0, length));
         EXPECT_THROW(read_mesh(file, 3), core::FileError) << length;
@@ -182,8 +182,8 @@ TEST_F(ReadGltfTest, binary_file_cut_off_at_any_length_is_a_file_error) {
 }
 
 TEST_F(ReadGltfTest, binary_file_with_any_byte_changed_ends_in_an_error_or_a_valid_mesh) {
-    const std::string whole = writer_.glb(meshes() + R"(,"nodes":[{"name":"a","mesh":0}])");
-    const auto file = folder_.path() / "changed.glb";
+    const std::string whole = writer.glb(meshes() + R"(,"nodes":[{"name":"a","mesh":0}])");
+    const auto file = folder.path() / "changed.glb";
     for (std::size_t i = 0; i < whole.size(); ++i)
         for (const char flip : {'\x01', '\x10', '\x80'}) {
             std::string changed = whole;

@@ -15,8 +15,8 @@ using support::put_bytes;
 class ReadObjTest : public testing::Test {
 protected:
     std::filesystem::path write(const std::string& name, const std::string& text) const {
-        put_bytes(folder_.path() / name, text);
-        return folder_.path() / name;
+        put_bytes(folder.path() / name, text);
+        return folder.path() / name;
     }
     ImportedMeshes read(const std::string& text, std::size_t channels = 3) const {
         return read_mesh(write("mesh.obj", text), channels);
@@ -29,7 +29,7 @@ protected:
         }
         return "nothing thrown";
     }
-    support::TemporaryFolder folder_;
+    support::TemporaryFolder folder;
 };
 
 // A letter U, 3 wide and 3 high with a notch of 1 x 2: area 7.
@@ -135,12 +135,12 @@ TEST_F(ReadObjTest, missing_material_file_is_a_note_and_its_names_survive_as_gre
 }
 
 TEST_F(ReadObjTest, material_file_outside_the_folder_is_refused) {
-    std::filesystem::create_directory(folder_.path() / "inner");
+    std::filesystem::create_directory(folder.path() / "inner");
     write("secret.mtl", "newmtl a\nKd 1 1 1\n");
     const auto file = write("inner/mesh.obj", "mtllib ../secret.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     EXPECT_THROW(read_mesh(file, 3), core::FileError);
     write("inner/mesh.obj", "mtllib link.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    std::filesystem::create_symlink("../secret.mtl", folder_.path() / "inner/link.mtl");
+    std::filesystem::create_symlink("../secret.mtl", folder.path() / "inner/link.mtl");
     EXPECT_THROW(read_mesh(file, 3), core::FileError);
 }
 

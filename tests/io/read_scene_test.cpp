@@ -30,11 +30,11 @@ protected:
         put("room.mtl", "newmtl wood\nKd 0.3 0.2 0.1\nKe 1 2 3\nnewmtl glass\nKd 0.1 0.1 0.1\n");
     }
     void put(const std::string& name, const std::string& text) const {
-        put_bytes(folder_.path() / name, text);
+        put_bytes(folder.path() / name, text);
     }
     model::Scene read(const std::string& text, bool allow_outside = false) const {
         put("scene.toml", text);
-        return read_scene(folder_.path() / "scene.toml", {allow_outside});
+        return read_scene(folder.path() / "scene.toml", {allow_outside});
     }
     // "scene.toml:line: text" or whatever was thrown.
     std::string message_of(const std::string& text) const {
@@ -42,9 +42,9 @@ protected:
             read(text);
         } catch (const core::Error& error) {
             std::string message = error.what();
-            const std::string folder = folder_.path().string() + "/";
-            for (std::size_t at; (at = message.find(folder)) != std::string::npos;)
-                message.erase(at, folder.size());
+            const std::string prefix = folder.path().string() + "/";
+            for (std::size_t at; (at = message.find(prefix)) != std::string::npos;)
+                message.erase(at, prefix.size());
             return message;
         }
         return "nothing thrown";
@@ -53,7 +53,7 @@ protected:
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance);
     }
 
-    support::TemporaryFolder folder_;
+    support::TemporaryFolder folder;
 };
 
 const std::string head = "format = 1\n";
@@ -331,9 +331,10 @@ TEST_F(ReadSceneTest, motions_need_one_source_and_increasing_times) {
 TEST_F(ReadSceneTest, files_outside_the_folder_are_refused_unless_allowed) {
     const support::TemporaryFolder other;
     put_bytes(other.path() / "mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    std::filesystem::create_symlink(other.path() / "mesh.obj", folder_.path() / "link.obj");
+    std::filesystem::create_symlink(other.path() / "mesh.obj", folder.path() / "link.obj");
     for (const std::string& mesh : {(other.path() / "mesh.obj").string(), std::string("link.obj")}) {
-        const std::string text = head + "[[object]]\nname = \"o\"\nmesh = \"" + mesh + "\"\n";
+        std::string text = head;
+        text.append("[[object]]\nname = \"o\"\nmesh = \"").append(mesh).append("\"\n");
         EXPECT_THROW(read(text), core::FileError) << mesh;
         EXPECT_EQ(read(text, true).objects.size(), 1U) << mesh;
     }
@@ -345,7 +346,7 @@ TEST_F(ReadSceneTest, missing_mesh_and_mesh_without_faces_name_the_line_of_the_s
     put("none.obj", "v 0 0 0\n");
     EXPECT_EQ(message_of(head + "[[object]]\nname = \"o\"\nmesh = \"none.obj\"\n"),
               "scene.toml:4: none.obj: holds no faces");
-    EXPECT_THROW(read_scene(folder_.path() / "no.toml", {}), core::FileError);
+    EXPECT_THROW(read_scene(folder.path() / "no.toml", {}), core::FileError);
 }
 
 TEST_F(ReadSceneTest, scene_file_cut_off_at_any_length_ends_in_an_error_or_a_valid_scene) {
@@ -384,7 +385,7 @@ protected:
 };
 
 TEST_F(ReadSceneGltfTest, bare_file_brings_its_own_animation_unit_and_up_axis) {
-    const model::Scene scene = read_scene(folder_.path() / "lift.glb", {});
+    const model::Scene scene = read_scene(folder.path() / "lift.glb", {});
     EXPECT_EQ(scene.up, Vec3(0, 1, 0));
     EXPECT_EQ(scene.time.start_s, 0.5);
     EXPECT_EQ(scene.time.end_s, 1.5);
@@ -435,7 +436,7 @@ TEST_F(ReadSceneTest, mesh_is_turned_only_where_its_stated_up_axis_differs) {
 }
 
 TEST_F(ReadSceneTest, bare_mesh_file_becomes_one_object_per_group_in_metres) {
-    const model::Scene scene = read_scene(folder_.path() / "room.obj", {});
+    const model::Scene scene = read_scene(folder.path() / "room.obj", {});
     ASSERT_EQ(scene.objects.size(), 3U);
     EXPECT_EQ(scene.objects[0].name, "floor");
     EXPECT_TRUE(scene.materials.at(0).emits());
