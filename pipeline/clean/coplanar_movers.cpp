@@ -16,7 +16,7 @@ namespace kinelux::clean {
 namespace {
 
 constexpr double coplanar_share = 1e-5; ///< of the extent: nearer than this is in the plane
-constexpr double lift_share = 1e-4;     ///< of the extent; above the offset at which rays start
+constexpr double lift_share = 1e-5;     ///< of the extent; below the offset at which shadow rays start
 constexpr double same_way = 0.9999;     ///< cosine between normals that face the same way
 
 struct Box {

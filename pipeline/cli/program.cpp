@@ -68,6 +68,7 @@ void become_program(const std::string& name, const std::vector<std::string>& arg
     std::vector<std::string> words{file};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     execv(file.c_str(), argv.data());

@@ -240,6 +240,22 @@ def colour_by_names(display, name):
     return table, 'Object'
 
 
+def value_range(source, name, association, component):
+    """Ends of the colour map: one for all irradiances and all frames; else of this frame, without its extremes."""
+    low, high = find_array(source, name)[1].GetRange(component)
+    if name.split('_')[0] in ('Irradiance', 'Direct', 'Indirect') and CASE['irradiance_high'] > 0.0:
+        return 0.0, CASE['irradiance_high']
+    try:
+        import numpy
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        data = paraview.servermanager.Fetch(source)
+        data = data.GetPointData() if association == 'POINTS' else data.GetCellData()
+        values = vtk_to_numpy(data.GetArray(name))
+        return low, float(numpy.percentile(values if values.ndim == 1 else values[:, component], 98))
+    except (ImportError, AttributeError):
+        return low, high
+
+
 def colour_by_values(source, view, name, component, log):
     """Colours by a scalar, or by the mean or one component of a vector; returns what is shown and its colour table."""
     association, array = find_array(source, name)
@@ -264,9 +280,7 @@ def colour_by_values(source, view, name, component, log):
     table = GetColorTransferFunction(name)
     if count > 1:
         table.VectorMode, table.VectorComponent = 'Component', component
-    low, high = find_array(shown, name)[1].GetRange(0 if count == 1 else component)
-    if CASE['irradiance'].split('_', 1)[1] == name.split('_', 1)[-1].replace('_mean', ''):
-        low, high = 0.0, CASE['irradiance_high'] or high  # one scale for all irradiances and all frames
+    low, high = value_range(shown, name, association, 0 if count == 1 else component)
     if log:
         low = max(low, 1e-3 * high)
     if not high > low:

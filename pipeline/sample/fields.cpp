@@ -15,7 +15,7 @@ namespace kinelux::sample {
 
 namespace {
 
-constexpr double nudge = 1e-3; ///< of the way to the middle of the triangles around a point
+constexpr double nudge = 0.1;   ///< of the way to the middle of the triangles around a point: past the gaps that fitting leaves
 constexpr double bent = 1e-9;  ///< 1 - cosine between a triangle and its point's normal, of 4.5e-5 rad
 constexpr double least_cosine =
     0.1; ///< triangles seen more edge-on from their point's normal lift it no further

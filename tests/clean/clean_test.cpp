@@ -260,6 +260,29 @@ TEST(Clean, object_of_which_nothing_is_left_is_refused) {
     EXPECT_THROW(cleaned(scene), core::GeometryError);
 }
 
+// A lamp panel under a ceiling at z = 2, both facing down; the lamp slides or rests.
+CleanResult lamp_in_ceiling(bool slides) {
+    model::Scene scene = empty_scene();
+    model::Mesh ceiling, lamp;
+    support::add_sheet(ceiling, Vec3{0.0, 0.0, 2.0}, Vec3{0.0, 4.0, 0.0}, Vec3{4.0, 0.0, 0.0});
+    support::add_sheet(lamp, Vec3{1.0, 1.0, 2.0}, Vec3{0.0, 0.5, 0.0}, Vec3{0.5, 0.0, 0.0});
+    add_object(scene, "ceiling", ceiling);
+    model::Object& object = add_object(scene, "lamp", lamp);
+    if (slides) {
+        object.motion = MotionId(0);
+        scene.motions = {{"slide", model::Interpolation::Linear, Vec3{0.0},
+                          {{0.0, Vec3{0.0}, Quat{1, 0, 0, 0}}, {1.0, Vec3{2.0, 0.0, 0.0}, Quat{1, 0, 0, 0}}}}};
+    }
+    return cleaned(std::move(scene));
+}
+
+TEST(Clean, panel_that_slides_within_a_ceiling_is_lifted_to_its_front) {
+    const CleanResult sliding = lamp_in_ceiling(true), resting = lamp_in_ceiling(false);
+    for (const Vec3& point : sliding.scene.objects[1].mesh.points) EXPECT_NEAR(point.z, 2.0 - 4e-5, 1e-12);
+    EXPECT_EQ(sliding.reports[1].notes.size(), resting.reports[1].notes.size() + 1);
+    for (const Vec3& point : resting.scene.objects[1].mesh.points) EXPECT_EQ(point.z, 2.0);
+}
+
 TEST(Clean, merging_never_eats_area) {
     // A plate so thin that its sides are nearer to each other than the default tolerance.
     model::Scene scene = auto_scene();

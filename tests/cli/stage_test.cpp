@@ -15,69 +15,70 @@ namespace fs = std::filesystem;
 class Case : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::temp_directory_path() / (std::string("kinelux-cli-") +
-                                               testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
+        folder = fs::temp_directory_path() / (std::string("kinelux-cli-") +
+                                              testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder);
+        fs::create_directories(folder);
         write("in.txt", "input");
     }
-    void TearDown() override { fs::remove_all(folder_); }
+    void TearDown() override { fs::remove_all(folder); }
 
     void write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ / name) << text;
+        std::ofstream(folder / name) << text;
     }
 
-    /// Runs a stage that writes out.txt. @return  exit code; works_ counts how often it really worked
+    /// Runs a stage that writes out.txt. @return  exit code; works counts how often it really worked
     int run(const std::string& extra = "") {
         Stage stage({.name = "test", .summary = "", .inputs = {"in.txt"}, .outputs = {"out.txt"}});
         std::uint32_t amount = 1;
         stage.options().add({.member = &amount, .flags = "--amount", .help = "of it"});
-        std::vector<std::string> words{"kinelux-test", folder_.string(), "--quiet", "--if-stale"};
+        std::vector<std::string> words{"kinelux-test", folder.string(), "--quiet", "--if-stale"};
         if (!extra.empty()) words.push_back(extra);
         std::vector<char*> argv;
+        argv.reserve(words.size());
         for (std::string& word : words) argv.push_back(word.data());
         return stage.run(static_cast<int>(argv.size()), argv.data(), [&](Stage& self) {
-            ++works_;
+            ++works;
             self.step("write", [&] { write("out.txt", std::to_string(amount)); });
             self.count("things", 3);
-            return code_;
+            return code;
         });
     }
 
-    fs::path folder_;
-    int works_ = 0;
-    core::ExitCode code_ = core::ExitCode::Ok;
+    fs::path folder;
+    int works = 0;
+    core::ExitCode code = core::ExitCode::Ok;
 };
 
 TEST_F(Case, a_stage_works_only_when_version_input_options_or_output_changed) {
     EXPECT_EQ(run(), 0);
     EXPECT_EQ(run(), 0);
-    EXPECT_EQ(works_, 1);
+    EXPECT_EQ(works, 1);
     run("-j2"); // how it is computed is not what is computed
-    EXPECT_EQ(works_, 1);
+    EXPECT_EQ(works, 1);
     run("--amount=2");
-    EXPECT_EQ(works_, 2);
+    EXPECT_EQ(works, 2);
     write("in.txt", "other");
     run("--amount=2");
-    EXPECT_EQ(works_, 3);
+    EXPECT_EQ(works, 3);
     write("out.txt", "damaged");
     run("--amount=2");
-    EXPECT_EQ(works_, 4);
+    EXPECT_EQ(works, 4);
 }
 
 TEST_F(Case, a_result_short_of_its_accuracy_stays_so) {
-    code_ = core::ExitCode::NotConverged;
+    code = core::ExitCode::NotConverged;
     EXPECT_EQ(run(), 5);
     EXPECT_EQ(run(), 5);
-    EXPECT_EQ(works_, 1);
+    EXPECT_EQ(works, 1);
 }
 
 TEST_F(Case, top_level_values_of_a_record_are_found) {
     run();
-    EXPECT_EQ(record_value(folder_ / "test.json", "program"), "\"kinelux-test\"");
-    EXPECT_EQ(record_value(folder_ / "test.json", "exit_code"), "0");
-    EXPECT_EQ(record_value(folder_ / "test.json", "things"), std::nullopt); // not at the top
-    EXPECT_EQ(record_value(folder_ / "absent.json", "program"), std::nullopt);
+    EXPECT_EQ(record_value(folder / "test.json", "program"), "\"kinelux-test\"");
+    EXPECT_EQ(record_value(folder / "test.json", "exit_code"), "0");
+    EXPECT_EQ(record_value(folder / "test.json", "things"), std::nullopt); // not at the top
+    EXPECT_EQ(record_value(folder / "absent.json", "program"), std::nullopt);
 }
 
 TEST(Program, exceptions_become_exit_codes) {

@@ -155,6 +155,61 @@ TEST(SurfaceFields, bent_surfaces_do_not_shadow_themselves) {
     }
 }
 
+/// A ball of small triangles of radius 0.5 about the origin, in clusters of one band of latitude each.
+void add_ball(model::PatchSet& set, model::ClusterTree& tree) {
+    constexpr std::uint32_t around = 24, bands = 12;
+    for (std::uint32_t j = 0; j <= bands; ++j)
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const double u = 2.0 * std::numbers::pi * i / around,
+                         v = std::numbers::pi * (j / double(bands) - 0.5);
+            set.small.points.push_back(
+                0.5 * Vec3(std::cos(v) * std::cos(u), std::cos(v) * std::sin(u), std::sin(v)));
+        }
+    for (std::uint32_t j = 0; j < bands; ++j) {
+        model::Cluster cluster;
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around;
+            for (const model::Triangle& t :
+                 {model::Triangle{a, b, b + around}, model::Triangle{a, b + around, a + around}}) {
+                cluster.triangles.push_back(static_cast<std::uint32_t>(set.small.triangles.size()));
+                set.small.triangles.push_back(t);
+                set.small.objects.emplace_back(0u);
+                set.small.materials.emplace_back(0u);
+            }
+        }
+        model::Element element;
+        element.cluster = ClusterId(tree.clusters.size());
+        tree.elements.push_back(element);
+        tree.clusters.push_back(cluster);
+    }
+}
+
+TEST(SurfaceFields, clusters_are_lit_smoothly_up_to_their_vertices) {
+    model::Scene scene = support::plain_scene(2);
+    scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});
+    const model::Patch lamp =
+        support::rectangle({3, -0.2, -0.2}, {0, 0, 0.4}, {0, 0.4, 0}, ObjectId(1), MaterialId(1));
+    Case c({lamp}, scene, 1, 0, 10.0);
+    const model::Element lit_by = c.tree.elements[0];
+    c.tree.elements.clear();
+    add_ball(c.set, c.tree);
+    c.tree.elements.push_back(lit_by);
+    c.shapes = geometry::element_shapes(c.set, c.tree, 0, 0);
+    c.mesh = display_mesh(c.shapes, c.set, c.tree, 0.1);
+    c.occluders = visibility::Occluders(visibility::bodies_of(c.set, c.tree, c.scene));
+    const model::SurfaceFields fields = c.fields(test::uniform_frame(c.shapes, c.scene, 0.0, 0.0));
+    const std::array<Vec3, 4> corners{Vec3(3, -0.2, -0.2), Vec3(3, -0.2, 0.2), Vec3(3, 0.2, 0.2),
+                                      Vec3(3, 0.2, -0.2)};
+    std::size_t lit = 0;
+    for (std::size_t p = 0; p < c.mesh.points.size(); ++p) {
+        if (c.mesh.point_objects[p] != 0 || c.mesh.normals[p].x < 0.45) continue;
+        const double truth = 5.0 * kernel::point_to_polygon(c.mesh.points[p], c.mesh.normals[p], corners);
+        EXPECT_NEAR(named(fields, "Direct_W_m2").values[p] / truth, 1.0, 0.02) << c.mesh.normals[p].x;
+        ++lit;
+    }
+    EXPECT_GT(lit, 100u);
+}
+
 TEST(SurfaceFields, moved_objects_take_their_points_and_their_light_along) {
     model::Scene scene = support::plain_scene(2);
     scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});

@@ -36,6 +36,7 @@ struct Room {
         const auto blocks = coefficients::compute_coefficients(shapes, scene, plan, occluders, options, 1e6);
         motion::FrameUpdater updater(blocks, shapes, scene, plan, occluders, options);
         std::vector<double> areas;
+        areas.reserve(shapes.size());
         for (const auto& shape : shapes) areas.push_back(shape.area);
         const std::vector<std::uint32_t> frames{0};
         return solve::solve_animation({scene, plan, blocks, tree.elements, areas}, updater, frames, {},
