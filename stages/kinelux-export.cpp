@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     const std::uint64_t& seed = stage.add_seed();
     const auto& range = stage.add_frames("first and last frame that are exported");
     std::optional<double> cell_size;
-    sample::DirectLightOptions direct;
+    std::optional<int> probe_rays, shadow_rays;
     stage.options().add({.member = &cell_size,
                          .flags = "--cell-size",
                          .help = "largest edge of a displayed cell",
@@ -25,19 +25,24 @@ int main(int argc, char** argv) {
                          .low = 1e-9,
                          .high = 1e9,
                          .unset = "what the scene says, else a quarter of an element"});
-    stage.options().add({.member = &direct.probe_rays,
+    stage.options().add({.member = &probe_rays,
                          .flags = "--probe-rays",
                          .help = "per point and source; all alike = done",
                          .low = 4,
-                         .high = 256});
-    stage.options().add({.member = &direct.shadow_rays,
+                         .high = 256,
+                         .unset = "from the accuracy"});
+    stage.options().add({.member = &shadow_rays,
                          .flags = "--shadow-rays",
                          .help = "per point and source in penumbra",
                          .low = 4,
-                         .high = 4096});
+                         .high = 4096,
+                         .unset = "from the accuracy"});
     return stage.run(argc, argv, [&](cli::Stage&) {
-        direct.seed = seed;
         auto light = stage.step("read", [&] { return stages::read_light_case(stage.folder()); });
+        auto direct = sample::direct_light_options_for(light.scene);
+        direct.probe_rays = probe_rays.value_or(direct.probe_rays);
+        direct.shadow_rays = shadow_rays.value_or(direct.shadow_rays);
+        direct.seed = seed;
         const auto solution = stage.step("read solution", [&] { return stage.folder().read_solution(); });
         const double size =
             cell_size.value_or(light.scene.exported.cell_size.value_or(0.25 * light.tree.element_size));

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "clean/coplanar_movers.h"
+#include "clean/coplanar_panels.h"
 #include "clean/intersections.h"
 #include "clean/orient.h"
 #include "clean/parts.h"
@@ -108,7 +108,7 @@ CleanResult clean_scene(model::Scene scene, const CleanOptions& options) {
         finish(meshes[o], result.reports[o]);
         scene.objects[o].mesh = std::move(meshes[o].mesh);
     }
-    lift_coplanar_movers(scene, result.reports);
+    lift_coplanar_panels(scene, result.reports);
     result.scene = std::move(scene);
     return result;
 }

@@ -17,9 +17,12 @@ namespace kinelux::sample {
 
 struct DirectLightOptions {
     int probe_rays = 16;   ///< per receiver and source, besides its corners; all alike = done, 4..256
-    int shadow_rays = 256; ///< per receiver and source in penumbra, >= probe_rays, up to 4096
+    int shadow_rays = 64; ///< per receiver and source in penumbra, >= probe_rays, up to 4096
     std::uint64_t seed = 1;
 };
+
+/// Options for a scene's accuracy: as many shadow rays that their sampling stays below the target in penumbra.
+DirectLightOptions direct_light_options_for(const model::Scene& scene);
 
 /// Where irradiance is wanted.
 struct Receiver {

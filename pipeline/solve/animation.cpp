@@ -147,6 +147,21 @@ model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::Fr
     return result;
 }
 
+namespace {
+
+/// What the basis of an element cannot hold of the indirect irradiance, judged by what its highest degree holds: of a
+/// smooth function each degree is smaller than the one before. A constant says nothing of its own error; a tenth of it
+/// is assumed. @return  integral over the element of the squared error, all channels
+double discretisation_error(std::span<const double> irradiance, std::size_t functions, std::size_t channels) {
+    constexpr double assumed_for_constants = 0.1;
+    if (functions == 1) return assumed_for_constants * assumed_for_constants * square_sum(irradiance);
+    std::size_t lower = 0; // functions below the highest degree
+    for (std::size_t degree = 1; lower + degree < functions; ++degree) lower += degree;
+    return square_sum(irradiance.subspan(lower * channels));
+}
+
+} // namespace
+
 std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
                                      std::span<const model::BlockEntry> blocks, std::span<const double> areas,
                                      std::span<const double> exitance, const FrameSolution& frame,
@@ -167,9 +182,14 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     // What the solver left is spread evenly: ||r||^2 = (residual ||M||)^2.
     const double residual = frame.residual * frame.residual * square_sum(exitance) / total_area;
     std::vector<float> result(layout.elements());
-    for (std::size_t e = 0; e < layout.elements(); ++e)
-        result[e] =
-            static_cast<float>(std::sqrt((error[e] / areas[e] + residual) / static_cast<double>(channels)));
+    for (std::size_t e = 0; e < layout.elements(); ++e) {
+        const double basis = discretisation_error(
+            std::span(frame.irradiance_indirect)
+                .subspan(layout.offsets[e] * channels, layout.count(e) * channels),
+            layout.count(e), channels);
+        const double mean_square = (error[e] + basis) / areas[e] + residual;
+        result[e] = static_cast<float>(std::sqrt(mean_square / static_cast<double>(channels)));
+    }
     return result;
 }
 

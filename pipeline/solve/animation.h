@@ -38,9 +38,10 @@ model::Solution solve_animation(const Animation& animation, motion::FrameUpdater
 /// All blocks as they are at one time: the static ones, with those of `frame` in their place.
 model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame);
 
-/// RMS error of irradiance on each element that the errors of the blocks and the residual of the solution let expect:
-/// sqrt(sum_j (error_ij ||B_j||)^2 / A_i), for errors of blocks that are independent of each other.
-/// @param frame  with radiosity and residual
+/// RMS error of irradiance on each element that is to be expected: sqrt((sum_j (error_ij ||B_j||)^2 + basis_i) / A_i + r^2),
+/// of the blocks (errors independent of each other), of the basis (what its highest degree holds of the indirect
+/// irradiance) and of the solver's residual. An estimate, not a bound.
+/// @param frame  with radiosity, indirect irradiance and residual
 /// @return  one per element, the RMS over channels [W/m2 or lx]
 std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
                                      std::span<const model::BlockEntry> blocks, std::span<const double> areas,

@@ -260,27 +260,34 @@ TEST(Clean, object_of_which_nothing_is_left_is_refused) {
     EXPECT_THROW(cleaned(scene), core::GeometryError);
 }
 
-// A lamp panel under a ceiling at z = 2, both facing down; the lamp slides or rests.
-CleanResult lamp_in_ceiling(bool slides) {
+// A panel in a ceiling at z = 2, both facing down.
+enum class Panel { Sliding, Emitting, Neither };
+CleanResult panel_in_ceiling(Panel kind) {
     model::Scene scene = empty_scene();
-    model::Mesh ceiling, lamp;
+    model::Mesh ceiling, panel;
     support::add_sheet(ceiling, Vec3{0.0, 0.0, 2.0}, Vec3{0.0, 4.0, 0.0}, Vec3{4.0, 0.0, 0.0});
-    support::add_sheet(lamp, Vec3{1.0, 1.0, 2.0}, Vec3{0.0, 0.5, 0.0}, Vec3{0.5, 0.0, 0.0});
+    support::add_sheet(panel, Vec3{1.0, 1.0, 2.0}, Vec3{0.0, 0.5, 0.0}, Vec3{0.5, 0.0, 0.0});
     add_object(scene, "ceiling", ceiling);
-    model::Object& object = add_object(scene, "lamp", lamp);
-    if (slides) {
+    model::Object& object = add_object(scene, "panel", panel);
+    if (kind == Panel::Emitting) object.mesh.materials.assign(2, MaterialId(1));
+    if (kind == Panel::Sliding) {
         object.motion = MotionId(0);
-        scene.motions = {{"slide", model::Interpolation::Linear, Vec3{0.0},
+        scene.motions = {{"slide",
+                          model::Interpolation::Linear,
+                          Vec3{0.0},
                           {{0.0, Vec3{0.0}, Quat{1, 0, 0, 0}}, {1.0, Vec3{2.0, 0.0, 0.0}, Quat{1, 0, 0, 0}}}}};
     }
     return cleaned(std::move(scene));
 }
 
-TEST(Clean, panel_that_slides_within_a_ceiling_is_lifted_to_its_front) {
-    const CleanResult sliding = lamp_in_ceiling(true), resting = lamp_in_ceiling(false);
-    for (const Vec3& point : sliding.scene.objects[1].mesh.points) EXPECT_NEAR(point.z, 2.0 - 4e-5, 1e-12);
-    EXPECT_EQ(sliding.reports[1].notes.size(), resting.reports[1].notes.size() + 1);
-    for (const Vec3& point : resting.scene.objects[1].mesh.points) EXPECT_EQ(point.z, 2.0);
+TEST(Clean, lamps_and_sliding_panels_within_a_ceiling_are_lifted_to_its_front) {
+    for (const Panel kind : {Panel::Sliding, Panel::Emitting}) {
+        const CleanResult result = panel_in_ceiling(kind);
+        for (const Vec3& point : result.scene.objects[1].mesh.points) EXPECT_NEAR(point.z, 2.0 - 2e-5, 1e-12);
+        for (const Vec3& point : result.scene.objects[0].mesh.points) EXPECT_EQ(point.z, 2.0);
+        EXPECT_EQ(result.reports[1].notes.size(), panel_in_ceiling(Panel::Neither).reports[1].notes.size() + 1);
+    }
+    for (const Vec3& point : panel_in_ceiling(Panel::Neither).scene.objects[1].mesh.points) EXPECT_EQ(point.z, 2.0);
 }
 
 TEST(Clean, merging_never_eats_area) {
