@@ -11,7 +11,8 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 add_library(kinelux_compile_options INTERFACE)
 target_compile_features(kinelux_compile_options INTERFACE cxx_std_20)
 target_compile_options(kinelux_compile_options INTERFACE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Wno-missing-field-initializers -Werror
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Werror
     -ffp-contract=off -fno-tree-slp-vectorize)
 target_compile_definitions(kinelux_compile_options INTERFACE GLM_FORCE_CTOR_INIT GLM_ENABLE_EXPERIMENTAL)
 if(KINELUX_SANITIZE)

@@ -46,7 +46,8 @@ generate_meshes() {
 }
 
 # A display of our own for everything that renders (Debian's VTK and ParaView draw through X only): started once,
-# shared, ended by its process id. Sets DISPLAY.
+# shared, ended by its process id (-noreset: it would start anew whenever its last client leaves, and refuse the next
+# one meanwhile). Sets DISPLAY.
 xvfb_pid=
 stop_display() {
     [ -z "$xvfb_pid" ] || { kill "$xvfb_pid" && wait "$xvfb_pid"; } 2>/dev/null
@@ -57,13 +58,13 @@ start_display() {
     command -v Xvfb >/dev/null || die "Xvfb is not installed: run scripts/install-deps"
     local folder number= tries
     folder=$(mktemp -d)
-    Xvfb -displayfd 3 -screen 0 1600x1200x24 -nolisten tcp 3>"$folder/number" 2>"$folder/log" &
+    Xvfb -displayfd 3 -screen 0 1600x1200x24 -nolisten tcp -noreset 3>"$folder/number" 2>"$folder/log" &
     xvfb_pid=$!
     trap stop_display EXIT
     trap 'exit 130' INT
     trap 'exit 143' TERM
     for ((tries = 0; tries < 300; ++tries)); do
-        number=$(cat "$folder/number")
+        number=$(cat "$folder/number" 2>/dev/null || true)
         [ -z "$number" ] || break
         kill -0 "$xvfb_pid" 2>/dev/null || break
         sleep 0.1

@@ -16,8 +16,9 @@ namespace kinelux::clean {
 namespace {
 
 constexpr double coplanar_share = 1e-5; ///< of the extent: nearer than this is in the plane
-constexpr double lift_share = 5e-6;     ///< of the extent; below the offset of shadow rays and the contact tolerance of fit
-constexpr double same_way = 0.9999;     ///< cosine between normals that face the same way
+constexpr double lift_share =
+    5e-6; ///< of the extent; below the offset of shadow rays and the contact tolerance of fit
+constexpr double same_way = 0.9999; ///< cosine between normals that face the same way
 
 struct Box {
     Vec3 low{std::numeric_limits<double>::infinity()};
@@ -63,7 +64,8 @@ Box bounds(const std::vector<Face>& faces) {
 }
 
 bool in_plane_of(const Face& panel, const Face& resting, double margin) {
-    if (glm::dot(panel.normal, resting.normal) < same_way || !panel.box.meets(resting.box, margin)) return false;
+    if (glm::dot(panel.normal, resting.normal) < same_way || !panel.box.meets(resting.box, margin))
+        return false;
     return std::all_of(panel.corners.begin(), panel.corners.end(), [&](const Vec3& corner) {
         return std::abs(glm::dot(corner - resting.corners[0], resting.normal)) <= margin;
     });
@@ -79,7 +81,8 @@ std::vector<geometry::Pose> poses_of(const model::Scene& scene, const model::Obj
     if (!object.motion) return {geometry::Pose{}};
     const model::Motion& motion = scene.motions[object.motion->value];
     std::vector<geometry::Pose> poses;
-    for (const model::Keyframe& key : motion.keyframes) poses.push_back(geometry::pose_at(motion, key.time_s));
+    for (const model::Keyframe& key : motion.keyframes)
+        poses.push_back(geometry::pose_at(motion, key.time_s));
     return poses;
 }
 
@@ -122,8 +125,8 @@ void lift_coplanar_panels(model::Scene& scene, std::vector<CleanReport>& reports
         if (!normal) continue;
         const double lift = lift_share * extent;
         for (Vec3& point : object.mesh.points) point += lift * *normal;
-        reports[o].notes.push_back(
-            fmt::format("lies in the plane of a surface that faces the same way: lifted to its front by {:.3g} m", lift));
+        reports[o].notes.push_back(fmt::format(
+            "lies in the plane of a surface that faces the same way: lifted to its front by {:.3g} m", lift));
     }
 }
 

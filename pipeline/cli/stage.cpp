@@ -111,9 +111,8 @@ int Stage::work_on(const std::function<core::ExitCode(Stage&)>& work) {
 }
 
 bool Stage::unchanged(const std::string& input_fingerprint) {
-    key_ = core::content_hash(
-        fmt::format("{} {}\n{}\n{}", program_, core::file_hash("/proc/self/exe"), options_.effective(),
-                    input_fingerprint));
+    key_ = core::content_hash(fmt::format("{} {}\n{}\n{}", program_, core::file_hash("/proc/self/exe"),
+                                          options_.effective(), input_fingerprint));
     if (if_stale_ && up_to_date(key_)) {
         core::log_info(fmt::format("{}: up to date", program_));
         return unchanged_ = true;

@@ -50,18 +50,17 @@ std::vector<Sphere> swept_spheres(std::span<const ElementShape> elements, const 
     std::vector<Sphere> result;
     for (const ObjectId object : plan.moving_objects) {
         const Sphere rest = bounding_sphere(elements, object);
-        if (!std::isfinite(rest.radius))
-            continue;
+        if (!std::isfinite(rest.radius)) continue;
         const model::Motion& motion = scene.motions[scene.objects[object.value].motion->value];
         std::optional<Sphere> current;
         for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame) {
             const Vec3 centre = geometry::pose_at(motion, scene.time.time_of_frame(frame)).point(rest.centre);
             if (current && glm::distance(current->centre, centre) < 0.5 * rest.radius) {
-                current->radius = std::max(current->radius, glm::distance(current->centre, centre) + rest.radius);
+                current->radius =
+                    std::max(current->radius, glm::distance(current->centre, centre) + rest.radius);
                 continue;
             }
-            if (current)
-                result.push_back(*current);
+            if (current) result.push_back(*current);
             current = Sphere{centre, rest.radius};
         }
         result.push_back(*current);
@@ -82,8 +81,7 @@ public:
     RowBuilder(std::span<const ElementShape> elements, const model::Scene& scene, const model::Plan& plan,
                const visibility::Occluders& occluders, const kernel::TransportOptions& options)
         : elements_(elements), occluders_(occluders), options_(options), carriers_(carriers(scene, plan)) {
-        if (plan.moving_occlusion)
-            movers_ = swept_spheres(elements, scene, plan);
+        if (plan.moving_occlusion) movers_ = swept_spheres(elements, scene, plan);
     }
 
     bool at_rest(std::size_t i, std::size_t j) const {
@@ -113,13 +111,12 @@ private:
         options.occluders = rides ? visibility::Among::Moving : visibility::Among::Resting;
         const kernel::TransportBlock block = kernel::transport(a, b, occluders_, options);
         row.rays += block.rays;
-        if (block.values.empty())
-            return;
+        if (block.values.empty()) return;
         row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(block.error)});
-        for (const double value : block.values)
-            row.values.push_back(static_cast<float>(value));
-        if (!rides && std::any_of(movers_.begin(), movers_.end(),
-                                  [&](const Sphere& mover) { return geometry::may_pass_between(a, b, mover.centre, mover.radius); }))
+        for (const double value : block.values) row.values.push_back(static_cast<float>(value));
+        if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Sphere& mover) {
+                return geometry::may_pass_between(a, b, mover.centre, mover.radius);
+            }))
             row.crossed.push_back(pair);
     }
 
@@ -135,12 +132,12 @@ double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder
     core::parallel_for(elements.size(), [&](std::size_t i) {
         for (std::size_t j = i; j < elements.size(); ++j)
             if (builder.at_rest(i, j) && kernel::may_exchange(elements[i], elements[j]))
-                bytes[i] += static_cast<double>(elements[i].basis.size() * elements[j].basis.size() * sizeof(float) +
-                                                sizeof(model::BlockEntry));
+                bytes[i] +=
+                    static_cast<double>(elements[i].basis.size() * elements[j].basis.size() * sizeof(float) +
+                                        sizeof(model::BlockEntry));
     });
     double sum = 0.0;
-    for (const double row : bytes)
-        sum += row;
+    for (const double row : bytes) sum += row;
     return sum / (1024.0 * 1024.0);
 }
 
@@ -163,16 +160,17 @@ model::UnknownLayout unknown_layout(std::span<const ElementShape> elements) {
     return layout;
 }
 
-model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elements, const model::Scene& scene,
-                                         const model::Plan& plan, const visibility::Occluders& occluders,
+model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elements,
+                                         const model::Scene& scene, const model::Plan& plan,
+                                         const visibility::Occluders& occluders,
                                          const kernel::TransportOptions& options, double memory_limit_mib) {
     const RowBuilder builder(rest_elements, scene, plan, occluders, options);
     const double bound_mib = memory_bound_mib(rest_elements, builder);
     if (bound_mib > memory_limit_mib)
-        throw core::ResourceError(
-            fmt::format("the transport blocks of {} elements may take {:.0f} MiB, {:.0f} MiB are allowed; ask for a lower "
-                        "accuracy, a larger element size, or raise --memory-limit",
-                        rest_elements.size(), bound_mib, memory_limit_mib));
+        throw core::ResourceError(fmt::format("the transport blocks of {} elements may take {:.0f} MiB, "
+                                              "{:.0f} MiB are allowed; ask for a lower "
+                                              "accuracy, a larger element size, or raise --memory-limit",
+                                              rest_elements.size(), bound_mib, memory_limit_mib));
 
     std::vector<Row> rows(rest_elements.size());
     core::Progress progress("coefficients", rows.size());
@@ -185,8 +183,7 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
     result.layout = unknown_layout(rest_elements);
     result.degree = plan.degree;
     std::size_t values = 0;
-    for (const Row& row : rows)
-        values += row.values.size();
+    for (const Row& row : rows) values += row.values.size();
     result.static_blocks.values.reserve(values);
     for (Row& row : rows) {
         const std::uint64_t base = result.static_blocks.values.size();
@@ -194,7 +191,8 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
             entry.offset += base;
             result.static_blocks.entries.push_back(entry);
         }
-        result.static_blocks.values.insert(result.static_blocks.values.end(), row.values.begin(), row.values.end());
+        result.static_blocks.values.insert(result.static_blocks.values.end(), row.values.begin(),
+                                           row.values.end());
         result.moving_pairs.insert(result.moving_pairs.end(), row.moving.begin(), row.moving.end());
         result.crossed_pairs.insert(result.crossed_pairs.end(), row.crossed.begin(), row.crossed.end());
         result.pairs_examined += static_cast<double>(row.examined);

@@ -9,8 +9,7 @@ std::vector<FormFactor> form_factors(const model::Coefficients& coefficients,
                                      std::span<const geometry::ElementShape> elements,
                                      std::span<const std::uint32_t> group_of, std::uint32_t groups) {
     std::vector<double> exchange(std::size_t{groups} * groups), error(exchange.size()), area(groups);
-    for (std::size_t e = 0; e < elements.size(); ++e)
-        area[group_of[e]] += elements[e].area;
+    for (std::size_t e = 0; e < elements.size(); ++e) area[group_of[e]] += elements[e].area;
     // A uniform radiosity 1 has the coefficients (sqrt(A), 0, 0, ...): A_i F_ij = sqrt(A_i A_j) G_ij^00.
     for (const model::BlockEntry& entry : coefficients.static_blocks.entries) {
         const double scale = std::sqrt(elements[entry.i].area * elements[entry.j].area);

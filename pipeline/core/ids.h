@@ -29,5 +29,7 @@ using ElementId = Id<struct ElementTag>;   ///< into model::ClusterTree::element
 
 template <class Tag>
 struct std::hash<kinelux::Id<Tag>> {
-    std::size_t operator()(kinelux::Id<Tag> id) const noexcept { return std::hash<std::uint32_t>{}(id.value); }
+    std::size_t operator()(kinelux::Id<Tag> id) const noexcept {
+        return std::hash<std::uint32_t>{}(id.value);
+    }
 };

@@ -31,10 +31,8 @@ Log& the_log() {
 void write_line(std::string_view line, bool shown) {
     Log& log = the_log();
     const std::scoped_lock lock(log.mutex);
-    if (shown)
-        fmt::print(stderr, "{}\n", line);
-    if (log.file)
-        log.file << line << std::endl;
+    if (shown) fmt::print(stderr, "{}\n", line);
+    if (log.file) log.file << line << std::endl;
 }
 
 } // namespace
@@ -42,8 +40,7 @@ void write_line(std::string_view line, bool shown) {
 void configure_log(Verbosity verbosity, const std::filesystem::path& log_file) {
     Log& log = the_log();
     log.verbosity = verbosity;
-    if (log_file.empty())
-        return;
+    if (log_file.empty()) return;
     log.file.open(log_file, std::ios::app);
     if (!log.file)
         throw FileError(fmt::format("{}: cannot be opened for the log; name a writable file with --log-file",
@@ -91,18 +88,15 @@ struct Progress::State {
 Progress::Progress(std::string title, std::size_t total) : state_(new State(std::move(title), total)) {}
 
 Progress::~Progress() {
-    if (state_->bar_shown)
-        fmt::print(stderr, "\r\x1b[K");
+    if (state_->bar_shown) fmt::print(stderr, "\r\x1b[K");
     delete state_;
 }
 
 void Progress::advance(std::size_t steps, std::string_view note) {
     const std::size_t done = state_->done.fetch_add(steps) + steps;
-    if (the_log().verbosity == Verbosity::Quiet)
-        return;
+    if (the_log().verbosity == Verbosity::Quiet) return;
     const std::unique_lock lock(state_->mutex, std::try_to_lock);
-    if (lock)
-        state_->show(done, note);
+    if (lock) state_->show(done, note);
 }
 
 } // namespace kinelux::core

@@ -12,7 +12,8 @@ void set_thread_count(std::size_t threads) {
     static std::unique_ptr<tbb::global_control> control;
     control.reset();
     if (threads > 0)
-        control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+        control =
+            std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {

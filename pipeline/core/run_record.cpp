@@ -71,7 +71,9 @@ void write_whole_file(const std::filesystem::path& file, std::string_view bytes)
             throw FileError(fmt::format("{}: cannot be written; is the folder there, writable and not full?",
                                         file.string()));
     }
-    std::filesystem::rename(part, file);
+    std::error_code failure;
+    std::filesystem::rename(part, file, failure);
+    if (failure) throw FileError(fmt::format("{}: cannot be replaced: {}", file.string(), failure.message()));
 }
 
 std::string_view version() { return KINELUX_VERSION; }

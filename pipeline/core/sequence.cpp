@@ -22,8 +22,7 @@ std::uint32_t reverse_bits(std::uint32_t x) {
 std::uint32_t sobol_second(std::uint32_t index) {
     std::uint32_t result = 0;
     for (std::uint32_t v = 1u << 31; index != 0; index >>= 1, v ^= v >> 1)
-        if (index & 1u)
-            result ^= v;
+        if (index & 1u) result ^= v;
     return result;
 }
 

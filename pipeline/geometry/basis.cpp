@@ -45,16 +45,14 @@ Inertia inertia_of(std::span<const DomainPoint> domain) {
 Vec2 principal_axis(const Inertia& inertia) {
     const double mean = 0.5 * (inertia.uu + inertia.vv);
     const double spread = std::hypot(0.5 * (inertia.uu - inertia.vv), inertia.uv);
-    if (mean + spread <= isotropic_ratio * (mean - spread))
-        return {1.0, 0.0};
+    if (mean + spread <= isotropic_ratio * (mean - spread)) return {1.0, 0.0};
     const double angle = 0.5 * std::atan2(2.0 * inertia.uv, inertia.uu - inertia.vv);
     return {std::cos(angle), std::sin(angle)};
 }
 
 double dot(std::span<const double> a, std::span<const double> b) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += a[i] * b[i];
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
     return sum;
 }
 
@@ -86,8 +84,7 @@ Basis::Basis(std::span<const DomainPoint> domain, int degree) : degree_(degree) 
 
     // Gram-Schmidt on its columns, twice over with the columns computed afresh from the coefficients in between.
     coefficients_.assign(n * n, 0.0);
-    for (std::size_t k = 0; k < n; ++k)
-        coefficients_[k * n + k] = 1.0;
+    for (std::size_t k = 0; k < n; ++k) coefficients_[k * n + k] = 1.0;
     std::vector<double> q(n * points);
     for (int pass = 0; pass < 2; ++pass)
         for (std::size_t k = 0; k < n; ++k) {
@@ -100,8 +97,7 @@ Basis::Basis(std::span<const DomainPoint> domain, int degree) : degree_(degree) 
             for (std::size_t j = 0; j < k; ++j) {
                 const std::span<const double> earlier(&q[j * points], points);
                 const double overlap = dot(column, earlier);
-                for (std::size_t p = 0; p < points; ++p)
-                    column[p] -= overlap * earlier[p];
+                for (std::size_t p = 0; p < points; ++p) column[p] -= overlap * earlier[p];
                 for (std::size_t m = 0; m <= j; ++m)
                     coefficients_[k * n + m] -= overlap * coefficients_[j * n + m];
             }
@@ -110,10 +106,8 @@ Basis::Basis(std::span<const DomainPoint> domain, int degree) : degree_(degree) 
                 *this = Basis(domain, degree - 1);
                 return;
             }
-            for (double& x : column)
-                x /= length;
-            for (std::size_t m = 0; m <= k; ++m)
-                coefficients_[k * n + m] /= length;
+            for (double& x : column) x /= length;
+            for (std::size_t m = 0; m <= k; ++m) coefficients_[k * n + m] /= length;
         }
 }
 
@@ -139,8 +133,7 @@ void Basis::evaluate(const Vec2& parameter, std::span<double> values) const {
     const std::size_t n = size();
     for (std::size_t k = 0; k < n; ++k) {
         double sum = 0.0;
-        for (std::size_t m = 0; m <= k; ++m)
-            sum += coefficients_[k * n + m] * products[m];
+        for (std::size_t m = 0; m <= k; ++m) sum += coefficients_[k * n + m] * products[m];
         values[k] = sum;
     }
 }

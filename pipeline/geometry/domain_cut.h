@@ -19,8 +19,8 @@ struct DomainCell {
 /// Cuts a triangulated domain along the lines u = u_lines[c] and v = v_lines[r] (strictly increasing, covering the
 /// domain). Neighbouring pieces share their corners to the last bit, so that a mesh made of them is conforming after
 /// merging equal corners. Cells without area are left out; the areas of all pieces sum to the domain's.
-std::vector<DomainCell> cut_domain(std::span<const model::DomainTriangle> domain, std::span<const double> u_lines,
-                                   std::span<const double> v_lines);
+std::vector<DomainCell> cut_domain(std::span<const model::DomainTriangle> domain,
+                                   std::span<const double> u_lines, std::span<const double> v_lines);
 
 /// Lines that divide [low, high] into the fewest equal parts not wider than `step`; both ends included.
 std::vector<double> grid_lines(double low, double high, double step);

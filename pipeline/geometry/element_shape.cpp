@@ -32,16 +32,14 @@ std::vector<Facet> patch_facets(const model::Patch& patch, const model::ClusterT
     for (std::uint32_t t = 0; t < element.triangle_count; ++t) {
         const model::DomainTriangle& uv = tree.domain_triangles[element.first_triangle + t];
         std::array<Vec3, 3> corners;
-        for (std::size_t c = 0; c < 3; ++c)
-            corners[c] = evaluate(patch.surface, uv[c]).position;
+        for (std::size_t c = 0; c < 3; ++c) corners[c] = evaluate(patch.surface, uv[c]).position;
         Facet facet = make_facet(corners, uv);
         if (patch.surface.orientation < 0.0) {
             std::swap(facet.corners[1], facet.corners[2]);
             std::swap(facet.parameters[1], facet.parameters[2]);
             facet.normal = -facet.normal;
         }
-        if (facet.area > 0.0)
-            facets.push_back(facet);
+        if (facet.area > 0.0) facets.push_back(facet);
     }
     return facets;
 }
@@ -55,8 +53,7 @@ std::vector<Facet> cluster_facets(const model::SmallTriangles& small, const mode
         const model::Triangle& triangle = small.triangles[t];
         const Facet facet =
             make_facet({small.points[triangle[0]], small.points[triangle[1]], small.points[triangle[2]]}, {});
-        if (!(facet.area > 0.0))
-            continue;
+        if (!(facet.area > 0.0)) continue;
         facets.push_back(facet);
         mean += facet.area * facet.normal;
         centre += facet.area / 3.0 * (facet.corners[0] + facet.corners[1] + facet.corners[2]);
@@ -69,7 +66,8 @@ std::vector<Facet> cluster_facets(const model::SmallTriangles& small, const mode
     const Vec3 v = glm::cross(normal, u);
     for (Facet& facet : facets)
         for (std::size_t c = 0; c < 3; ++c)
-            facet.parameters[c] = {glm::dot(facet.corners[c] - centre, u), glm::dot(facet.corners[c] - centre, v)};
+            facet.parameters[c] = {glm::dot(facet.corners[c] - centre, u),
+                                   glm::dot(facet.corners[c] - centre, v)};
     return facets;
 }
 
@@ -122,21 +120,20 @@ std::vector<RawNode> facet_nodes(std::span<const Facet> facets, int degree) {
 std::vector<DomainPoint> domain_points(std::span<const RawNode> nodes) {
     std::vector<DomainPoint> points;
     points.reserve(nodes.size());
-    for (const RawNode& raw : nodes)
-        points.push_back({raw.parameter, raw.node.weight});
+    for (const RawNode& raw : nodes) points.push_back({raw.parameter, raw.node.weight});
     return points;
 }
 
 // `count` nodes of equal weight at equal steps of the area of the facets.
 std::vector<RawNode> systematic_nodes(const ElementShape& shape, std::size_t count) {
     std::vector<RawNode> all = facet_nodes(shape.facets, shape.facets.size() >= count ? 1 : 2);
-    if (all.size() <= count)
-        return all;
+    if (all.size() <= count) return all;
     std::vector<RawNode> chosen;
     const double step = shape.area / static_cast<double>(count);
     double sum = 0.0;
     for (const RawNode& raw : all)
-        for (sum += raw.node.weight; chosen.size() < count && sum > (static_cast<double>(chosen.size()) + 0.5) * step;) {
+        for (sum += raw.node.weight;
+             chosen.size() < count && sum > (static_cast<double>(chosen.size()) + 0.5) * step;) {
             chosen.push_back(raw);
             chosen.back().node.weight = step;
         }
@@ -147,8 +144,7 @@ std::vector<RawNode> systematic_nodes(const ElementShape& shape, std::size_t cou
 std::vector<RawNode> patch_nodes(const ElementShape& shape, int degree) {
     const std::vector<RawNode> exact = facet_nodes(shape.facets, degree);
     const auto kept = compress_quadrature(domain_points(exact), degree);
-    if (!kept)
-        return exact;
+    if (!kept) return exact;
     std::vector<RawNode> nodes;
     for (const auto& [index, weight] : *kept) {
         nodes.push_back(exact[index]);
@@ -181,8 +177,8 @@ void set_basis_and_nodes(ElementShape& shape, int degree) {
 
 } // namespace
 
-std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const model::ClusterTree& tree, int degree,
-                                         int cluster_degree) {
+std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const model::ClusterTree& tree,
+                                         int degree, int cluster_degree) {
     std::vector<ElementShape> shapes(tree.elements.size());
     core::parallel_for(shapes.size(), [&](std::size_t e) {
         const model::Element& element = tree.elements[e];
@@ -194,7 +190,8 @@ std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const m
         shape.facets = element.patch ? patch_facets(patches.patches[element.patch->value], tree, element)
                                      : cluster_facets(patches.small, tree.clusters[element.cluster->value]);
         if (shape.facets.empty())
-            throw core::GeometryError("element " + std::to_string(e) + " has no area; run kinelux-clean first");
+            throw core::GeometryError("element " + std::to_string(e) +
+                                      " has no area; run kinelux-clean first");
         set_bounds(shape);
         set_basis_and_nodes(shape, element.patch ? degree : cluster_degree);
     });
@@ -204,8 +201,7 @@ std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const m
 ElementShape moved(const ElementShape& rest, const Pose& pose) {
     ElementShape shape = rest;
     for (Facet& facet : shape.facets) {
-        for (Vec3& corner : facet.corners)
-            corner = pose.point(corner);
+        for (Vec3& corner : facet.corners) corner = pose.point(corner);
         facet.normal = pose.direction(facet.normal);
     }
     for (NodeSet* set : {&shape.nodes, &shape.fine_nodes})
@@ -239,9 +235,9 @@ bool may_pass_between(const ElementShape& a, const ElementShape& b, const Vec3& 
     const double length2 = glm::dot(axis, axis);
     const double t = length2 > 0.0 ? std::clamp(glm::dot(centre - a.centre, axis) / length2, 0.0, 1.0) : 0.0;
     const double reach = radius + std::max(a.radius, b.radius);
-    if (glm::distance(centre, a.centre + t * axis) > reach)
-        return false;
-    const Vec3 low = glm::min(a.box_low, b.box_low) - radius, high = glm::max(a.box_high, b.box_high) + radius;
+    if (glm::distance(centre, a.centre + t * axis) > reach) return false;
+    const Vec3 low = glm::min(a.box_low, b.box_low) - radius,
+               high = glm::max(a.box_high, b.box_high) + radius;
     return glm::all(glm::lessThanEqual(low, centre)) && glm::all(glm::lessThanEqual(centre, high));
 }
 

@@ -41,8 +41,8 @@ struct ElementShape {
     ElementId id;
     ObjectId object;
     MaterialId material;
-    bool planar = true;               ///< all facets in one plane: no exchange with itself
-    bool from_patch = true;           ///< else a cluster
+    bool planar = true;     ///< all facets in one plane: no exchange with itself
+    bool from_patch = true; ///< else a cluster
     std::vector<Facet> facets;
     Basis basis;
     double area = 0.0;                ///< [m2]
@@ -59,8 +59,8 @@ struct ElementShape {
 /// @param degree          of the bases on patches, 0..max_degree
 /// @param cluster_degree  of the bases on clusters
 /// @throws GeometryError  an element without area (carries its number)
-std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const model::ClusterTree& tree, int degree,
-                                         int cluster_degree);
+std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const model::ClusterTree& tree,
+                                         int degree, int cluster_degree);
 
 /// The same element elsewhere: positions, normals and bounds moved, parameters and basis untouched.
 ElementShape moved(const ElementShape& rest, const Pose& pose);

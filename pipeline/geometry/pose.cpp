@@ -14,7 +14,8 @@ Vec3 catmull_rom(const std::vector<model::Keyframe>& keys, std::size_t k, double
     const auto slope = [&](std::size_t i) {
         const std::size_t before = i > 0 ? i - 1 : i;
         const std::size_t after = i + 1 < keys.size() ? i + 1 : i;
-        return (keys[after].translation - keys[before].translation) / (keys[after].time_s - keys[before].time_s);
+        return (keys[after].translation - keys[before].translation) /
+               (keys[after].time_s - keys[before].time_s);
     };
     const double length = keys[k + 1].time_s - keys[k].time_s;
     const double s2 = s * s, s3 = s2 * s;

@@ -84,8 +84,7 @@ GaussRule make_gauss(int n) {
             derivative = n * (x * value - previous) / (x * x - 1.0);
             const double change = value / derivative;
             x -= change;
-            if (std::abs(change) < 1e-16)
-                break;
+            if (std::abs(change) < 1e-16) break;
         }
         rule.nodes.push_back(0.5 * (1.0 - x));
         rule.weights.push_back(1.0 / ((1.0 - x * x) * derivative * derivative));
@@ -99,12 +98,12 @@ std::span<const TriangleNode> triangle_rule(int degree) {
     constexpr int table_size = 33;
     static const std::vector<Rule> table = [] {
         std::vector<Rule> rules;
-        for (int d = 0; d < table_size; ++d)
-            rules.push_back(d <= 8 ? dunavant(d) : collapsed_gauss(d));
+        for (int d = 0; d < table_size; ++d) rules.push_back(d <= 8 ? dunavant(d) : collapsed_gauss(d));
         return rules;
     }();
     if (degree < 0 || degree >= table_size)
-        throw core::GeometryError("a triangle rule of degree " + std::to_string(degree) + " was asked for; 0 to 32 exist");
+        throw core::GeometryError("a triangle rule of degree " + std::to_string(degree) +
+                                  " was asked for; 0 to 32 exist");
     return table[static_cast<std::size_t>(degree)];
 }
 
@@ -112,12 +111,12 @@ const GaussRule& gauss_rule(int n) {
     constexpr int table_size = 33;
     static const std::vector<GaussRule> table = [] {
         std::vector<GaussRule> rules(1);
-        for (int k = 1; k < table_size; ++k)
-            rules.push_back(make_gauss(k));
+        for (int k = 1; k < table_size; ++k) rules.push_back(make_gauss(k));
         return rules;
     }();
     if (n < 1 || n >= table_size)
-        throw core::GeometryError("a Gauss rule of " + std::to_string(n) + " nodes was asked for; 1 to 32 exist");
+        throw core::GeometryError("a Gauss rule of " + std::to_string(n) +
+                                  " nodes was asked for; 1 to 32 exist");
     return table[static_cast<std::size_t>(n)];
 }
 

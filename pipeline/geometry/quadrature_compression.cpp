@@ -8,8 +8,7 @@
 namespace kinelux::geometry {
 
 std::optional<std::vector<KeptNode>> compress_quadrature(std::span<const DomainPoint> rule, int degree) {
-    if (degree > max_degree || 2 * rule.size() < 3 * basis_size(degree))
-        return std::nullopt;
+    if (degree > max_degree || 2 * rule.size() < 3 * basis_size(degree)) return std::nullopt;
     const Basis moments(rule, degree);
     const std::size_t conditions = moments.size();
 
@@ -24,8 +23,7 @@ std::optional<std::vector<KeptNode>> compress_quadrature(std::span<const DomainP
             kept.push_back({next, rule[next].weight});
             ++next;
         }
-        if (kept.size() <= conditions)
-            return kept;
+        if (kept.size() <= conditions) return kept;
         for (std::size_t i = 0; i < kept.size(); ++i) {
             moments.evaluate(rule[kept[i].index].parameter, values);
             for (std::size_t k = 0; k < conditions; ++k)
@@ -41,8 +39,7 @@ std::optional<std::vector<KeptNode>> compress_quadrature(std::span<const DomainP
                 leaving = i;
             }
         }
-        if (leaving == kept.size())
-            return std::nullopt;
+        if (leaving == kept.size()) return std::nullopt;
         for (std::size_t i = 0; i < kept.size(); ++i)
             kept[i].weight = std::max(0.0, kept[i].weight - step * null(static_cast<Eigen::Index>(i)));
         kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(leaving));

@@ -24,10 +24,14 @@ private:
     std::filesystem::path folder_;
     const model::DisplayMesh& mesh_;
     const model::Scene& scene_;
-    struct Written { double time_s; std::string file; };
+    struct Written {
+        double time_s;
+        std::string file;
+    };
     std::vector<Written> written_;
     Vec3 low_, high_; ///< bounds over all frames written
-    double exposure_ = 0.0;        ///< what radiosity is multiplied by for the Color array; of the first frame written
+    double exposure_ =
+        0.0; ///< what radiosity is multiplied by for the Color array; of the first frame written
     double irradiance_high_ = 0.0; ///< end of view.py's colour map, over all frames written [W/m2 or lx]
 };
 
@@ -38,8 +42,8 @@ void write_meters(const std::filesystem::path& file, std::span<const model::Mete
 struct ExportedFrame {
     std::vector<Vec3> points;
     std::vector<model::Triangle> triangles;
-    std::vector<std::uint32_t> objects;  ///< one per triangle
-    model::NamedArray irradiance;        ///< per point, one component per channel
+    std::vector<std::uint32_t> objects; ///< one per triangle
+    model::NamedArray irradiance;       ///< per point, one component per channel
 };
 ExportedFrame read_frame(const std::filesystem::path& vtu, model::Quantity quantity);
 

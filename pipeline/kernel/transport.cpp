@@ -28,18 +28,15 @@ struct RuleLimits {
 constexpr double far_rule_error = 1e-3, fine_rule_error = 1e-3, near_rule_error = 1e-3;
 
 RuleLimits limits_for(double tolerance) {
-    if (tolerance >= 1e-2)
-        return {1.0, 0.3};
-    if (tolerance >= 1e-3)
-        return {2.0, 0.5};
+    if (tolerance >= 1e-2) return {1.0, 0.3};
+    if (tolerance >= 1e-3) return {2.0, 0.5};
     return {4.0, 1.0};
 }
 
 double kernel_value(const SurfaceNode& x, const SurfaceNode& y) {
     const Vec3 r = y.position - x.position;
     const double cos_x = glm::dot(x.normal, r), cos_y = -glm::dot(y.normal, r);
-    if (!(cos_x > 0.0) || !(cos_y > 0.0))
-        return 0.0;
+    if (!(cos_x > 0.0) || !(cos_y > 0.0)) return 0.0;
     const double r2 = glm::dot(r, r);
     return cos_x * cos_y / (std::numbers::pi * r2 * r2);
 }
@@ -58,8 +55,7 @@ public:
     PairSight(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
               const TransportOptions& options)
         : occluders_(occluders), among_(options.occluders) {
-        if (options.occlusion && !occluders.empty())
-            probe(a, b, options);
+        if (options.occlusion && !occluders.empty()) probe(a, b, options);
     }
 
     Sight sight() const { return sight_; }
@@ -68,16 +64,14 @@ public:
 
     /// 1 or 0 where the pair is partly hidden, always 1 where it is clear.
     bool visible(const Vec3& x, const Vec3& y) {
-        if (sight_ == Sight::Clear)
-            return true;
+        if (sight_ == Sight::Clear) return true;
         ++rays_;
         return !occluders_.occluded(x, y, among_);
     }
 
     /// Rays to all pairs of facing nodes at once. @param kernel  a.size x b.size; set to 0 where hidden
     void mask(std::span<const SurfaceNode> a, std::span<const SurfaceNode> b, std::span<double> kernel) {
-        if (sight_ == Sight::Clear)
-            return;
+        if (sight_ == Sight::Clear) return;
         thread_local std::vector<visibility::Segment> segments;
         thread_local std::vector<std::size_t> indices;
         thread_local std::vector<std::uint8_t> blocked;
@@ -92,8 +86,7 @@ public:
         occluders_.occluded(segments, blocked, among_);
         rays_ += static_cast<std::uint32_t>(segments.size());
         for (std::size_t s = 0; s < segments.size(); ++s)
-            if (blocked[s] != 0)
-                kernel[indices[s]] = 0.0;
+            if (blocked[s] != 0) kernel[indices[s]] = 0.0;
     }
 
 private:
@@ -109,13 +102,13 @@ private:
             const Vec2 s = core::sobol_2d(static_cast<std::uint32_t>(k), seed);
             const SurfaceNode& x = xs[static_cast<std::size_t>(s.x * static_cast<double>(xs.size()))];
             const SurfaceNode& y = ys[static_cast<std::size_t>(s.y * static_cast<double>(ys.size()))];
-            if (kernel_value(x, y) > 0.0)
-                segments.push_back({x.position, y.position});
+            if (kernel_value(x, y) > 0.0) segments.push_back({x.position, y.position});
         }
         std::vector<std::uint8_t> blocked(segments.size());
         occluders_.occluded(segments, blocked, among_);
         rays_ += static_cast<std::uint32_t>(segments.size());
-        const auto hidden = static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), std::uint8_t{1}));
+        const auto hidden =
+            static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), std::uint8_t{1}));
         if (segments.empty() || (hidden > 0 && hidden < segments.size()))
             sight_ = Sight::Partial;
         else
@@ -149,8 +142,7 @@ void add_node_product(const ElementShape& a, const NodeSet& xs, const ElementSha
         for (std::size_t j = 0; j < columns; ++j) {
             const double weight = kernel[i * columns + j] * ys.nodes[j].weight;
             if (weight > 0.0)
-                for (std::size_t l = 0; l < nb; ++l)
-                    gathered[l] += weight * ys.basis[j * nb + l];
+                for (std::size_t l = 0; l < nb; ++l) gathered[l] += weight * ys.basis[j * nb + l];
         }
         for (std::size_t k = 0; k < na; ++k)
             for (std::size_t l = 0; l < nb; ++l)
@@ -159,7 +151,8 @@ void add_node_product(const ElementShape& a, const NodeSet& xs, const ElementSha
 }
 
 double longest_edge(const Facet& facet) {
-    return std::max({glm::distance(facet.corners[0], facet.corners[1]), glm::distance(facet.corners[1], facet.corners[2]),
+    return std::max({glm::distance(facet.corners[0], facet.corners[1]),
+                     glm::distance(facet.corners[1], facet.corners[2]),
                      glm::distance(facet.corners[2], facet.corners[0])});
 }
 
@@ -193,10 +186,8 @@ struct NearLimits {
 };
 
 NearLimits near_limits_for(double tolerance) {
-    if (tolerance >= 1e-2)
-        return {2.0, 4.0, 4, 2};
-    if (tolerance >= 1e-3)
-        return {4.0, 8.0, 4, 4};
+    if (tolerance >= 1e-2) return {2.0, 4.0, 4, 2};
+    if (tolerance >= 1e-3) return {4.0, 8.0, 4, 4};
     return {8.0, 16.0, 8, 5};
 }
 
@@ -206,21 +197,24 @@ NearLimits near_limits_for(double tolerance) {
 class NearPair {
 public:
     NearPair(const ElementShape& a, const ElementShape& b, const TransportOptions& options, PairSight& sight)
-        : a_(a), b_(b), sight_(sight), limits_(near_limits_for(tolerance_for(options, sight))), gathered_(b.basis.size()),
+        : a_(a),
+          b_(b),
+          sight_(sight),
+          limits_(near_limits_for(tolerance_for(options, sight))),
+          gathered_(b.basis.size()),
           outer_phi_(a.basis.size()) {
-        for (const Facet& facet : b.facets)
-            parts_.push_back(make_part(facet));
+        for (const Facet& facet : b.facets) parts_.push_back(make_part(facet));
     }
 
     void add_to(std::vector<double>& values) {
-        for (const Facet& facet : a_.facets)
-            outer(facet, values);
+        for (const Facet& facet : a_.facets) outer(facet, values);
     }
 
 private:
     // Where rays decide, their sampling error is the larger one: a finer quadrature would only cost rays.
     static double tolerance_for(const TransportOptions& options, const PairSight& sight) {
-        return sight.sight() == Sight::Partial ? std::max(options.tolerance, partial_tolerance) : options.tolerance;
+        return sight.sight() == Sight::Partial ? std::max(options.tolerance, partial_tolerance)
+                                               : options.tolerance;
     }
 
     static constexpr double partial_tolerance = 1e-2;
@@ -229,7 +223,9 @@ private:
     static constexpr double point_ratio = 0.1; ///< below it one node is enough
 
     static Part make_part(const Facet& facet) {
-        return {facet, (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3.0, longest_edge(facet), 0, {}, {}};
+        return {
+            facet, (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3.0, longest_edge(facet), 0, {},
+            {}};
     }
 
     void outer(const Facet& facet, std::vector<double>& values) {
@@ -238,8 +234,7 @@ private:
         const Vec3 gap = glm::max(Vec3(0.0), glm::max(b_.box_low - centroid, centroid - b_.box_high));
         const double distance = std::max(glm::length(gap) - 0.667 * edge, 0.0);
         if (edge > outer_ratio * distance && edge * limits_.outer_parts > 2.0 * a_.radius) {
-            for (const Facet& part : split(facet))
-                outer(part, values);
+            for (const Facet& part : split(facet)) outer(part, values);
             return;
         }
         const std::size_t facets = b_.facets.size();
@@ -252,12 +247,12 @@ private:
                 parameter += node.barycentric[c] * facet.parameters[c];
             }
             std::fill(gathered_.begin(), gathered_.end(), 0.0);
-            for (std::size_t part = 0; part < facets; ++part)
-                inner({x, facet.normal, 0.0}, part);
+            for (std::size_t part = 0; part < facets; ++part) inner({x, facet.normal, 0.0}, part);
             a_.basis.evaluate(parameter, outer_phi_);
             for (std::size_t k = 0; k < outer_phi_.size(); ++k)
                 for (std::size_t l = 0; l < gathered_.size(); ++l)
-                    values[k * gathered_.size() + l] += node.weight * facet.area * outer_phi_[k] * gathered_[l];
+                    values[k * gathered_.size() + l] +=
+                        node.weight * facet.area * outer_phi_[k] * gathered_[l];
         }
     }
 
@@ -265,48 +260,44 @@ private:
     void inner(const SurfaceNode& x, std::size_t index) {
         const Facet& facet = parts_[index].facet;
         const double height = glm::dot(facet.normal, x.position - facet.corners[0]);
-        if (height <= 0.0)
-            return;
+        if (height <= 0.0) return;
         if (std::all_of(facet.corners.begin(), facet.corners.end(),
                         [&](const Vec3& corner) { return glm::dot(x.normal, corner - x.position) <= 0.0; }))
             return;
         const double edge = parts_[index].edge;
-        const double distance = std::max(height, glm::distance(x.position, parts_[index].centroid) - 0.667 * edge);
+        const double distance =
+            std::max(height, glm::distance(x.position, parts_[index].centroid) - 0.667 * edge);
         if (edge < inner_ratio * distance) {
             add_nodes(x, index);
         } else if (edge * limits_.inner_parts <= 2.0 * b_.radius) {
             add_closed_form(x, index);
         } else {
-            if (parts_[index].first_child == 0)
-                split_part(index);
-            for (std::size_t child = 0; child < 4; ++child)
-                inner(x, parts_[index].first_child + child);
+            if (parts_[index].first_child == 0) split_part(index);
+            for (std::size_t child = 0; child < 4; ++child) inner(x, parts_[index].first_child + child);
         }
     }
 
     void split_part(std::size_t index) {
         const std::array<Facet, 4> children = split(parts_[index].facet);
         parts_[index].first_child = parts_.size();
-        for (const Facet& child : children)
-            parts_.push_back(make_part(child));
+        for (const Facet& child : children) parts_.push_back(make_part(child));
     }
 
     void add_nodes(const SurfaceNode& x, std::size_t index) {
         NodeSet& set = parts_[index].nodes;
-        if (set.nodes.empty())
-            set = nodes_of(parts_[index].facet);
+        if (set.nodes.empty()) set = nodes_of(parts_[index].facet);
         const std::size_t n = gathered_.size();
         for (std::size_t i = 0; i < set.nodes.size(); ++i) {
             const double value = kernel_value(x, set.nodes[i]) * set.nodes[i].weight;
             if (value > 0.0 && sight_.visible(x.position, set.nodes[i].position))
-                for (std::size_t l = 0; l < n; ++l)
-                    gathered_[l] += value * set.basis[i * n + l];
+                for (std::size_t l = 0; l < n; ++l) gathered_[l] += value * set.basis[i * n + l];
         }
     }
 
     NodeSet nodes_of(const Facet& facet) const {
         NodeSet set;
-        const auto rule = geometry::triangle_rule(longest_edge(facet) < point_ratio * b_.radius ? 1 : limits_.inner_degree);
+        const auto rule =
+            geometry::triangle_rule(longest_edge(facet) < point_ratio * b_.radius ? 1 : limits_.inner_degree);
         set.basis.resize(rule.size() * gathered_.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
             SurfaceNode y{Vec3(0.0), facet.normal, rule[i].weight * facet.area};
@@ -316,7 +307,8 @@ private:
                 parameter += rule[i].barycentric[c] * facet.parameters[c];
             }
             set.nodes.push_back(y);
-            b_.basis.evaluate(parameter, std::span(set.basis).subspan(i * gathered_.size(), gathered_.size()));
+            b_.basis.evaluate(parameter,
+                              std::span(set.basis).subspan(i * gathered_.size(), gathered_.size()));
         }
         return set;
     }
@@ -324,15 +316,13 @@ private:
     void add_closed_form(const SurfaceNode& x, std::size_t index) {
         Part& part = parts_[index];
         const double factor = point_to_polygon(x.position, x.normal, part.facet.corners);
-        if (!(factor > 0.0) || !sight_.visible(x.position, part.centroid))
-            return;
+        if (!(factor > 0.0) || !sight_.visible(x.position, part.centroid)) return;
         if (part.centroid_basis.empty()) {
             const auto& q = part.facet.parameters;
             part.centroid_basis.resize(gathered_.size());
             b_.basis.evaluate((q[0] + q[1] + q[2]) / 3.0, part.centroid_basis);
         }
-        for (std::size_t l = 0; l < gathered_.size(); ++l)
-            gathered_[l] += factor * part.centroid_basis[l];
+        for (std::size_t l = 0; l < gathered_.size(); ++l) gathered_[l] += factor * part.centroid_basis[l];
     }
 
     const ElementShape& a_;
@@ -345,8 +335,7 @@ private:
 
 double frobenius_norm(std::span<const double> values) {
     double sum = 0.0;
-    for (const double value : values)
-        sum += value * value;
+    for (const double value : values) sum += value * value;
     return std::sqrt(sum);
 }
 
@@ -355,14 +344,11 @@ bool in_front_of(const ElementShape& planar, const ElementShape& other) {
     const Vec3& origin = planar.facets.front().corners[0];
     const double height = glm::dot(planar.mean_normal, other.centre - origin);
     const double margin = 1e-9 * (planar.radius + other.radius);
-    if (height + other.radius <= margin)
-        return false;
-    if (height - other.radius > margin)
-        return true;
+    if (height + other.radius <= margin) return false;
+    if (height - other.radius > margin) return true;
     for (const Facet& facet : other.facets)
         for (const Vec3& corner : facet.corners)
-            if (glm::dot(planar.mean_normal, corner - origin) > margin)
-                return true;
+            if (glm::dot(planar.mean_normal, corner - origin) > margin) return true;
     return false;
 }
 
@@ -371,31 +357,27 @@ bool cone_reaches(const ElementShape& a, const ElementShape& b) {
     const Vec3 axis = b.centre - a.centre;
     const double distance = glm::length(axis);
     const double radii = a.radius + b.radius;
-    if (distance <= radii)
-        return true;
+    if (distance <= radii) return true;
     const double spread = std::asin(radii / distance) + std::acos(std::clamp(a.cone_cosine, -1.0, 1.0));
-    return std::acos(std::clamp(glm::dot(a.mean_normal, axis) / distance, -1.0, 1.0)) - spread < 0.5 * std::numbers::pi;
+    return std::acos(std::clamp(glm::dot(a.mean_normal, axis) / distance, -1.0, 1.0)) - spread <
+           0.5 * std::numbers::pi;
 }
 
 } // namespace
 
 bool may_exchange(const ElementShape& a, const ElementShape& b) {
-    if (&a == &b || a.id == b.id)
-        return !a.planar;
-    if (a.planar ? !in_front_of(a, b) : !cone_reaches(a, b))
-        return false;
+    if (&a == &b || a.id == b.id) return !a.planar;
+    if (a.planar ? !in_front_of(a, b) : !cone_reaches(a, b)) return false;
     return b.planar ? in_front_of(b, a) : cone_reaches(b, a);
 }
 
 TransportBlock transport(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
                          const TransportOptions& options) {
     TransportBlock block;
-    if (!may_exchange(a, b))
-        return block;
+    if (!may_exchange(a, b)) return block;
     PairSight sight(a, b, occluders, options);
     block.rays = sight.rays();
-    if (sight.sight() == Sight::Hidden)
-        return block;
+    if (sight.sight() == Sight::Hidden) return block;
 
     const RuleLimits limits = limits_for(options.tolerance);
     const double eta = box_distance(a, b) / (2.0 * std::max(a.radius, b.radius));
@@ -414,8 +396,7 @@ TransportBlock transport(const ElementShape& a, const ElementShape& b, const vis
         std::vector<double> transposed(na * nb, 0.0);
         NearPair(b, a, options, sight).add_to(transposed);
         for (std::size_t k = 0; k < na; ++k)
-            for (std::size_t l = 0; l < nb; ++l)
-                block.values[k * nb + l] = transposed[l * na + k];
+            for (std::size_t l = 0; l < nb; ++l) block.values[k * nb + l] = transposed[l * na + k];
     }
     block.rays = sight.rays();
 

@@ -11,18 +11,19 @@
 namespace kinelux::kernel {
 
 struct TransportOptions {
-    double tolerance = 1e-3;   ///< of a block, relative to its size [1], 1e-6..0.1
-    int probe_rays = 16;       ///< a pair whose probes all agree is taken as wholly visible or wholly hidden, 4..256
-    bool occlusion = true;     ///< false: nothing stands between any pair
+    double tolerance = 1e-3; ///< of a block, relative to its size [1], 1e-6..0.1
+    int probe_rays =
+        16; ///< a pair whose probes all agree is taken as wholly visible or wholly hidden, 4..256
+    bool occlusion = true;                                ///< false: nothing stands between any pair
     visibility::Among occluders = visibility::Among::All; ///< which bodies may stand between
     std::uint64_t seed = 1;
 };
 
 /// Transport between two elements in world position.
 struct TransportBlock {
-    std::vector<double> values;  ///< size(a) x size(b), row-major; empty = zero [1]
-    double error = 0.0;          ///< estimated Frobenius norm of the error of `values` [1]
-    std::uint32_t rays = 0;      ///< cast for visibility
+    std::vector<double> values; ///< size(a) x size(b), row-major; empty = zero [1]
+    double error = 0.0;         ///< estimated Frobenius norm of the error of `values` [1]
+    std::uint32_t rays = 0;     ///< cast for visibility
 };
 
 /// G_ab^kl = integral integral phi_k(x) phi_l(y) cos+ cos'+ V / (pi r^2) dA dA, by Gauss products where the elements are

@@ -26,7 +26,8 @@ struct Element {
     std::optional<ClusterId> cluster; ///< else this is set
     ObjectId object;
     MaterialId material;
-    std::uint32_t first_triangle = 0, triangle_count = 0; ///< into ClusterTree::domain_triangles; patch pieces only
+    std::uint32_t first_triangle = 0,
+                  triangle_count = 0; ///< into ClusterTree::domain_triangles; patch pieces only
 };
 
 using DomainTriangle = std::array<Vec2, 3>; ///< corners (u,v) on the patch's surface, counter-clockwise
@@ -37,7 +38,7 @@ struct ClusterTree {
     std::vector<Cluster> clusters;
     std::vector<Element> elements; ///< sorted by object, then patch, then cluster
     std::vector<DomainTriangle> domain_triangles;
-    double element_size = 0.0;     ///< largest edge of a patch's piece that was aimed at [m]
+    double element_size = 0.0; ///< largest edge of a patch's piece that was aimed at [m]
 };
 
 /// @throws GeometryError  a small triangle in no cluster or in two, ids or ranges out of bounds

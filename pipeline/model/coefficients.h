@@ -22,8 +22,8 @@ struct UnknownLayout {
 /// One stored transport block G_ij, i <= j; G_ji is its transpose.
 struct BlockEntry {
     std::uint32_t i = 0, j = 0;
-    std::uint64_t offset = 0;   ///< of its count(i) x count(j) row-major values
-    float error = 0.0f;         ///< estimated Frobenius norm of its error, same unit as the values [1]
+    std::uint64_t offset = 0; ///< of its count(i) x count(j) row-major values
+    float error = 0.0f;       ///< estimated Frobenius norm of its error, same unit as the values [1]
 };
 
 /// A sparse symmetric set of transport blocks
@@ -45,10 +45,11 @@ struct Coefficients {
     UnknownLayout layout;
     int degree = 0;
     BlockSet static_blocks;
-    std::vector<ElementPair> moving_pairs;   ///< bodies move relative to each other; recomputed in every frame
-    std::vector<ElementPair> crossed_pairs;  ///< at rest, but a moving body may enter between them in some frame
-    double pairs_examined = 0;               ///< of static pairs [1]
-    double rays_cast = 0;                    ///< for static blocks [1]
+    std::vector<ElementPair> moving_pairs; ///< bodies move relative to each other; recomputed in every frame
+    std::vector<ElementPair>
+        crossed_pairs;         ///< at rest, but a moving body may enter between them in some frame
+    double pairs_examined = 0; ///< of static pairs [1]
+    double rays_cast = 0;      ///< for static blocks [1]
 };
 
 /// @throws GeometryError  unsorted or out-of-range entries, value offsets beyond the end, not-a-number values

@@ -16,10 +16,10 @@ enum class SurfaceType : std::uint8_t { Plane, Cylinder, Cone, Sphere, Torus, BS
 /// A tensor-product rational B-spline surface.
 struct BSpline {
     std::uint32_t degree_u = 0, degree_v = 0;
-    std::uint32_t count_u = 0, count_v = 0;  ///< poles along u and v
-    std::vector<double> knots_u, knots_v;    ///< count + degree + 1 each, non-decreasing
-    std::vector<Vec3> poles;                 ///< count_u * count_v, u fastest [m]
-    std::vector<double> weights;             ///< same size, > 0; empty = 1
+    std::uint32_t count_u = 0, count_v = 0; ///< poles along u and v
+    std::vector<double> knots_u, knots_v;   ///< count + degree + 1 each, non-decreasing
+    std::vector<Vec3> poles;                ///< count_u * count_v, u fastest [m]
+    std::vector<double> weights;            ///< same size, > 0; empty = 1
 };
 
 /// A parametric surface x(u,v) in a right-handed orthonormal frame (axis_u, axis_v, axis_w) at origin:
@@ -33,11 +33,11 @@ struct Surface {
     SurfaceType type = SurfaceType::Plane;
     Vec3 origin{0.0};
     Vec3 axis_u{1.0, 0.0, 0.0}, axis_v{0.0, 1.0, 0.0}, axis_w{0.0, 0.0, 1.0};
-    double radius = 0.0;         ///< [m]
-    double minor_radius = 0.0;   ///< [m]
+    double radius = 0.0;       ///< [m]
+    double minor_radius = 0.0; ///< [m]
     double half_angle_rad = 0.0;
-    double orientation = 1.0;    ///< +1 or -1
-    BSpline bspline;             ///< only for BSpline
+    double orientation = 1.0; ///< +1 or -1
+    BSpline bspline;          ///< only for BSpline
 };
 
 /// A trimmed piece of one surface: what carries radiosity as a smooth function.
@@ -45,19 +45,20 @@ struct Patch {
     ObjectId object;
     MaterialId material;
     Surface surface;
-    std::vector<Vec2> points;                       ///< the domain's vertices (u,v)
-    std::vector<Triangle> triangles;                ///< a triangulation of the domain, counter-clockwise in (u,v)
-    std::vector<std::vector<std::uint32_t>> loops;  ///< closed boundaries: outer counter-clockwise first, holes clockwise
-    double deviation_max = 0.0;                     ///< largest distance of the source vertices from the surface [m]
-    double deviation_rms = 0.0;                     ///< [m]
+    std::vector<Vec2> points;        ///< the domain's vertices (u,v)
+    std::vector<Triangle> triangles; ///< a triangulation of the domain, counter-clockwise in (u,v)
+    std::vector<std::vector<std::uint32_t>>
+        loops;                  ///< closed boundaries: outer counter-clockwise first, holes clockwise
+    double deviation_max = 0.0; ///< largest distance of the source vertices from the surface [m]
+    double deviation_rms = 0.0; ///< [m]
 };
 
 /// Triangles that no patch holds, of all objects; each belongs to exactly one cluster later.
 struct SmallTriangles {
-    std::vector<Vec3> points;           ///< [m]
+    std::vector<Vec3> points; ///< [m]
     std::vector<Triangle> triangles;
-    std::vector<ObjectId> objects;      ///< one per triangle
-    std::vector<MaterialId> materials;  ///< one per triangle
+    std::vector<ObjectId> objects;     ///< one per triangle
+    std::vector<MaterialId> materials; ///< one per triangle
 };
 
 /// All geometry that exchanges light. Two-sided faces are in it twice, back to back, each copy one-sided.

@@ -14,17 +14,17 @@ namespace kinelux::model {
 struct FrameSolution {
     std::uint32_t frame = 0;
     double time_s = 0.0;
-    std::vector<double> radiosity;            ///< B [W/m2 or lm/m2]
-    std::vector<double> irradiance_direct;    ///< E straight from sources, G M [W/m2 or lx]
-    std::vector<double> irradiance_indirect;  ///< E by interreflection, G (B - M)
-    std::uint32_t sweeps = 0;                 ///< solver work, in sweeps over all blocks
-    double residual = 0.0;                    ///< ||M + rho G B - B|| / ||M|| [1]
-    double unshot = 0.0;                      ///< flux not yet shot / flux emitted [1]
-    double error_estimate = 0.0;              ///< estimated relative L2 error of B over non-emitting elements [1]
-    std::vector<float> element_error;         ///< estimated RMS error of irradiance per element [W/m2 or lx]
+    std::vector<double> radiosity;           ///< B [W/m2 or lm/m2]
+    std::vector<double> irradiance_direct;   ///< E straight from sources, G M [W/m2 or lx]
+    std::vector<double> irradiance_indirect; ///< E by interreflection, G (B - M)
+    std::uint32_t sweeps = 0;                ///< solver work, in sweeps over all blocks
+    double residual = 0.0;                   ///< ||M + rho G B - B|| / ||M|| [1]
+    double unshot = 0.0;                     ///< flux not yet shot / flux emitted [1]
+    double error_estimate = 0.0;      ///< estimated relative L2 error of B over non-emitting elements [1]
+    std::vector<float> element_error; ///< estimated RMS error of irradiance per element [W/m2 or lx]
     bool converged = true;
-    std::uint32_t blocks_recomputed = 0;      ///< blocks that changed since the previous frame
-    double seconds = 0.0;                     ///< spent on this frame; not part of the file's bytes
+    std::uint32_t blocks_recomputed = 0; ///< blocks that changed since the previous frame
+    double seconds = 0.0;                ///< spent on this frame; not part of the file's bytes
 };
 
 struct Solution {

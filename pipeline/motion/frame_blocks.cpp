@@ -16,7 +16,8 @@ using model::ElementPair;
 // The elements of moving bodies in their place at one time; all others stay as they are at rest.
 class PosedElements {
 public:
-    PosedElements(std::span<const ElementShape> rest, const model::Plan& plan, std::span<const geometry::Pose> poses)
+    PosedElements(std::span<const ElementShape> rest, const model::Plan& plan,
+                  std::span<const geometry::Pose> poses)
         : rest_(rest), index_(rest.size(), none) {
         for (const ElementShape& element : rest)
             if (std::find(plan.moving_objects.begin(), plan.moving_objects.end(), element.object) !=
@@ -61,7 +62,8 @@ bool shaded(const ElementShape& a, const ElementShape& b, const visibility::Occl
     const auto& xs = a.nodes.nodes;
     const auto& ys = b.nodes.nodes;
     const std::size_t probes = std::max(xs.size(), ys.size());
-    constexpr std::size_t stride = 7; // coprime to the usual node counts: pairs each node with a far one of the other
+    constexpr std::size_t stride =
+        7; // coprime to the usual node counts: pairs each node with a far one of the other
     for (std::size_t k = 0; k < probes; ++k)
         if (occluders.occluded(xs[k % xs.size()].position, ys[(stride * k) % ys.size()].position,
                                visibility::Among::Moving))
@@ -71,18 +73,22 @@ bool shaded(const ElementShape& a, const ElementShape& b, const visibility::Occl
 
 } // namespace
 
-FrameUpdater::FrameUpdater(const model::Coefficients& coefficients, std::span<const ElementShape> rest_elements,
-                           const model::Scene& scene, const model::Plan& plan, visibility::Occluders& occluders,
+FrameUpdater::FrameUpdater(const model::Coefficients& coefficients,
+                           std::span<const ElementShape> rest_elements, const model::Scene& scene,
+                           const model::Plan& plan, visibility::Occluders& occluders,
                            const kernel::TransportOptions& options)
-    : coefficients_(coefficients), rest_(rest_elements), scene_(scene), plan_(plan), occluders_(occluders),
+    : coefficients_(coefficients),
+      rest_(rest_elements),
+      scene_(scene),
+      plan_(plan),
+      occluders_(occluders),
       options_(options) {}
 
 FrameBlocks FrameUpdater::at(double time_s) {
     FrameBlocks result;
     const auto poses = geometry::object_poses(scene_, time_s);
     occluders_.set_poses(poses);
-    if (plan_.moving_objects.empty())
-        return result;
+    if (plan_.moving_objects.empty()) return result;
     const PosedElements elements(rest_, plan_, poses);
     const std::vector<Ball> movers = bounds_of_movers(elements.moving());
 
@@ -90,7 +96,8 @@ FrameBlocks FrameUpdater::at(double time_s) {
     std::vector<ElementPair> candidates = coefficients_.moving_pairs;
     const std::size_t moving = candidates.size();
     if (plan_.moving_occlusion)
-        candidates.insert(candidates.end(), coefficients_.crossed_pairs.begin(), coefficients_.crossed_pairs.end());
+        candidates.insert(candidates.end(), coefficients_.crossed_pairs.begin(),
+                          coefficients_.crossed_pairs.end());
     struct Slot {
         bool changed = false;
         kernel::TransportBlock block;
@@ -105,27 +112,24 @@ FrameBlocks FrameUpdater::at(double time_s) {
             const bool near = std::any_of(movers.begin(), movers.end(), [&](const Ball& ball) {
                 return geometry::may_pass_between(a, b, ball.centre, ball.radius);
             });
-            if (!near || !shaded(a, b, occluders_))
-                return;
+            if (!near || !shaded(a, b, occluders_)) return;
         }
         slots[k] = {true, kernel::transport(a, b, occluders_, options)};
     });
 
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < slots.size(); ++k)
-        if (slots[k].changed)
-            order.push_back(k);
-    std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return candidates[x] < candidates[y]; });
+        if (slots[k].changed) order.push_back(k);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t x, std::size_t y) { return candidates[x] < candidates[y]; });
     for (const std::size_t k : order) {
         const kernel::TransportBlock& block = slots[k].block;
         result.pairs.push_back(candidates[k]);
         result.rays += block.rays;
-        if (block.values.empty())
-            continue;
-        result.blocks.entries.push_back({candidates[k].i, candidates[k].j, result.blocks.values.size(),
-                                         static_cast<float>(block.error)});
-        for (const double value : block.values)
-            result.blocks.values.push_back(static_cast<float>(value));
+        if (block.values.empty()) continue;
+        result.blocks.entries.push_back(
+            {candidates[k].i, candidates[k].j, result.blocks.values.size(), static_cast<float>(block.error)});
+        for (const double value : block.values) result.blocks.values.push_back(static_cast<float>(value));
     }
     return result;
 }

@@ -16,9 +16,9 @@ namespace kinelux::motion {
 
 /// The transport blocks that differ from the static ones at one time.
 struct FrameBlocks {
-    model::BlockSet blocks;                      ///< replace or add to the static blocks; a listed pair without an
-                                                 ///< entry in `blocks` is zero now
-    std::vector<model::ElementPair> pairs;       ///< all pairs whose block is not the static one, sorted
+    model::BlockSet blocks;                ///< replace or add to the static blocks; a listed pair without an
+                                           ///< entry in `blocks` is zero now
+    std::vector<model::ElementPair> pairs; ///< all pairs whose block is not the static one, sorted
     std::uint64_t rays = 0;
 };
 
@@ -27,15 +27,15 @@ struct FrameBlocks {
 class FrameUpdater {
 public:
     /// All arguments must outlive the updater. @param occluders  is moved to each frame's poses
-    FrameUpdater(const model::Coefficients& coefficients, std::span<const geometry::ElementShape> rest_elements,
-                 const model::Scene& scene, const model::Plan& plan, visibility::Occluders& occluders,
+    FrameUpdater(const model::Coefficients& coefficients,
+                 std::span<const geometry::ElementShape> rest_elements, const model::Scene& scene,
+                 const model::Plan& plan, visibility::Occluders& occluders,
                  const kernel::TransportOptions& options);
 
     /// The blocks at a time [s]; frames may be asked for in any order.
     FrameBlocks at(double time_s);
 
 private:
-
     const model::Coefficients& coefficients_;
     std::span<const geometry::ElementShape> rest_;
     const model::Scene& scene_;

@@ -29,11 +29,11 @@ double patch_area(const model::Patch& patch) {
 // Area of each material, patches and small triangles together.
 std::vector<double> material_areas(const Scene& scene, const model::PatchSet& set) {
     std::vector<double> areas(scene.materials.size());
-    for (const model::Patch& patch : set.patches)
-        areas[patch.material.value] += patch_area(patch);
+    for (const model::Patch& patch : set.patches) areas[patch.material.value] += patch_area(patch);
     for (std::size_t t = 0; t < set.small.triangles.size(); ++t) {
         const auto& [a, b, c] = set.small.triangles[t];
-        const Vec3 cross = glm::cross(set.small.points[b] - set.small.points[a], set.small.points[c] - set.small.points[a]);
+        const Vec3 cross =
+            glm::cross(set.small.points[b] - set.small.points[a], set.small.points[c] - set.small.points[a]);
         areas[set.small.materials[t].value] += 0.5 * glm::length(cross);
     }
     return areas;
@@ -61,11 +61,14 @@ Effect interreflection(const Scene& scene, const std::vector<double>& areas, Pla
     const double mean = total > 0.0 ? reflected / total : 0.0;
     const double small = 0.1 * scene.accuracy.target;
     if (largest > 0.0)
-        plan.bounces = static_cast<std::uint32_t>(std::ceil(std::log(small) / std::log(std::max(mean, 1e-6))));
+        plan.bounces =
+            static_cast<std::uint32_t>(std::ceil(std::log(small) / std::log(std::max(mean, 1e-6))));
     Effect effect{"interreflection", largest > 0.0, "", 0.0, false};
-    effect.reason = largest > 0.0 ? fmt::format("mean reflectance {:.2f}: about {} bounces until {:.2g} % of the light is left",
-                                                mean, plan.bounces, 100.0 * small)
-                                  : "no surface reflects";
+    effect.reason =
+        largest > 0.0
+            ? fmt::format("mean reflectance {:.2f}: about {} bounces until {:.2g} % of the light is left",
+                          mean, plan.bounces, 100.0 * small)
+            : "no surface reflects";
     effect = overridden(effect, scene.effects.interreflection);
     if (!effect.simulated) {
         plan.bounces = 0;
@@ -87,8 +90,7 @@ Effect colour(const Scene& scene, const std::vector<double>& areas, Plan& plan) 
     const std::vector<double>* light = nullptr;
     for (std::size_t m = 0; m < areas.size(); ++m) {
         const model::Material& material = scene.materials[m];
-        if (!(areas[m] > 0.0))
-            continue;
+        if (!(areas[m] > 0.0)) continue;
         grey = grey && std::all_of(material.reflectance.begin(), material.reflectance.end(),
                                    [&](double rho) { return rho == material.reflectance.front(); });
         if (material.emits()) {
@@ -98,25 +100,24 @@ Effect colour(const Scene& scene, const std::vector<double>& areas, Plan& plan) 
     }
     plan.single_channel = grey && light != nullptr && light->front() > 0.0;
     const auto count = scene.channels.size();
-    if (count == 1)
-        return {"colour", false, "one channel", 0.0, false};
+    if (count == 1) return {"colour", false, "one channel", 0.0, false};
     return {"colour", !plan.single_channel,
-            plan.single_channel ? "all reflectances are grey and all sources of one colour: one channel, then scaled"
-                                : fmt::format("reflectances or sources differ between the {} channels", count),
+            plan.single_channel
+                ? "all reflectances are grey and all sources of one colour: one channel, then scaled"
+                : fmt::format("reflectances or sources differ between the {} channels", count),
             0.0, false};
 }
 
 // In a scene whose every point lies in front of every patch nothing can come between two points.
 bool convex(const model::PatchSet& set) {
-    if (!set.small.triangles.empty())
-        return false;
+    if (!set.small.triangles.empty()) return false;
     std::vector<Vec3> points;
     Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (const model::Patch& patch : set.patches) {
-        if (patch.surface.type != model::SurfaceType::Plane)
-            return false;
+        if (patch.surface.type != model::SurfaceType::Plane) return false;
         for (const Vec2& uv : patch.points) {
-            points.push_back(patch.surface.origin + uv.x * patch.surface.axis_u + uv.y * patch.surface.axis_v);
+            points.push_back(patch.surface.origin + uv.x * patch.surface.axis_u +
+                             uv.y * patch.surface.axis_v);
             low = glm::min(low, points.back());
             high = glm::max(high, points.back());
         }
@@ -124,28 +125,29 @@ bool convex(const model::PatchSet& set) {
     const double margin = 1e-9 * glm::length(high - low);
     return std::all_of(set.patches.begin(), set.patches.end(), [&](const model::Patch& patch) {
         const Vec3 normal = patch.surface.orientation * patch.surface.axis_w;
-        return std::all_of(points.begin(), points.end(),
-                           [&](const Vec3& p) { return glm::dot(normal, p - patch.surface.origin) >= -margin; });
+        return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+            return glm::dot(normal, p - patch.surface.origin) >= -margin;
+        });
     });
 }
 
 Effect static_occlusion(const Scene& scene, const model::PatchSet& set, Plan& plan) {
     const bool needed = !convex(set);
     Effect effect{"static occlusion", needed,
-                  needed ? "surfaces stand in front of others: rays decide" : "every surface faces every point: no rays",
+                  needed ? "surfaces stand in front of others: rays decide"
+                         : "every surface faces every point: no rays",
                   0.0, false};
     effect = overridden(effect, scene.effects.static_occlusion);
-    if (!effect.simulated && needed)
-        effect.risked_error = 1.0;
+    if (!effect.simulated && needed) effect.risked_error = 1.0;
     plan.static_occlusion = effect.simulated;
     return effect;
 }
 
 bool really_moves(const Scene& scene, const model::Motion& motion) {
-    if (scene.time.frames < 2)
-        return false;
+    if (scene.time.frames < 2) return false;
     return std::any_of(motion.keyframes.begin(), motion.keyframes.end(), [&](const model::Keyframe& key) {
-        return key.translation != motion.keyframes.front().translation || key.rotation != motion.keyframes.front().rotation;
+        return key.translation != motion.keyframes.front().translation ||
+               key.rotation != motion.keyframes.front().rotation;
     });
 }
 
@@ -160,8 +162,8 @@ Effect motion(const Scene& scene, Plan& plan) {
     }
     const bool moves = !plan.moving_objects.empty();
     return {"motion", moves,
-            moves ? fmt::format("{} of {} bodies move over {} frames: {}", plan.moving_objects.size(), scene.objects.size(),
-                                scene.time.frames, names)
+            moves ? fmt::format("{} of {} bodies move over {} frames: {}", plan.moving_objects.size(),
+                                scene.objects.size(), scene.time.frames, names)
                   : "nothing changes with time: one solve serves all frames",
             0.0, false};
 }
@@ -169,12 +171,11 @@ Effect motion(const Scene& scene, Plan& plan) {
 Effect moving_occlusion(const Scene& scene, Plan& plan) {
     const bool moves = !plan.moving_objects.empty();
     Effect effect{"moving occlusion", moves,
-                  moves ? "bodies that move may come between others: pairs they cross are watched" : "nothing moves", 0.0,
-                  false};
-    if (moves)
-        effect = overridden(effect, scene.effects.moving_occlusion);
-    if (moves && !effect.simulated)
-        effect.risked_error = 1.0;
+                  moves ? "bodies that move may come between others: pairs they cross are watched"
+                        : "nothing moves",
+                  0.0, false};
+    if (moves) effect = overridden(effect, scene.effects.moving_occlusion);
+    if (moves && !effect.simulated) effect.risked_error = 1.0;
     plan.moving_occlusion = effect.simulated;
     return effect;
 }
@@ -185,13 +186,16 @@ void predict(const model::ClusterTree& tree, Plan& plan) {
     plan.unknowns = pieces * size(plan.degree) + clusters * size(plan.cluster_degree);
     // In a room about half of all pairs face each other; a convex one comes close to all.
     plan.predicted_blocks = tree.elements.size() * (tree.elements.size() + 1) / 2;
-    const double mean_block = std::pow(static_cast<double>(plan.unknowns) / static_cast<double>(tree.elements.size()), 2.0);
-    plan.predicted_memory_mib = static_cast<double>(plan.predicted_blocks) * (4.0 * mean_block + 24.0) / (1024.0 * 1024.0);
+    const double mean_block =
+        std::pow(static_cast<double>(plan.unknowns) / static_cast<double>(tree.elements.size()), 2.0);
+    plan.predicted_memory_mib =
+        static_cast<double>(plan.predicted_blocks) * (4.0 * mean_block + 24.0) / (1024.0 * 1024.0);
 }
 
 } // namespace
 
-model::Plan plan_effects(const model::Scene& scene, const model::PatchSet& patches, const model::ClusterTree& tree) {
+model::Plan plan_effects(const model::Scene& scene, const model::PatchSet& patches,
+                         const model::ClusterTree& tree) {
     Plan plan;
     plan.degree = scene.accuracy.degree.value_or(scene.accuracy.target > coarse_target ? 1 : 2);
     plan.cluster_degree = 0;
@@ -203,8 +207,8 @@ model::Plan plan_effects(const model::Scene& scene, const model::PatchSet& patch
     plan.effects.push_back(moving_occlusion(scene, plan));
     const bool clusters = !tree.clusters.empty();
     plan.effects.push_back({"clusters", clusters,
-                            clusters ? fmt::format("{} small triangles in {} clusters", patches.small.triangles.size(),
-                                                   tree.clusters.size())
+                            clusters ? fmt::format("{} small triangles in {} clusters",
+                                                   patches.small.triangles.size(), tree.clusters.size())
                                      : "no small triangles",
                             0.0, false});
     predict(tree, plan);

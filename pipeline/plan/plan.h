@@ -10,6 +10,7 @@ namespace kinelux::plan {
 
 /// Decides what a scene calls for, with the reason and the error risked by what is left out, and predicts unknowns,
 /// blocks and memory. The scene's own [effects] win.
-model::Plan plan_effects(const model::Scene& scene, const model::PatchSet& patches, const model::ClusterTree& tree);
+model::Plan plan_effects(const model::Scene& scene, const model::PatchSet& patches,
+                         const model::ClusterTree& tree);
 
 } // namespace kinelux::plan

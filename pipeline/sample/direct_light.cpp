@@ -86,7 +86,7 @@ void add_corners(const Receiver& receiver, std::span<const LightPanel> panels, R
 } // namespace
 
 DirectLightOptions direct_light_options_for(const model::Scene& scene) {
-    // Scrambled Sobol points miss a visible share by about 1 / n; 2 / target keeps the worst of a picture's points near it.
+    // A visible share found with n scrambled Sobol points is off by about 1 / n in the mean and a few times that at worst.
     DirectLightOptions options;
     options.shadow_rays = static_cast<int>(std::clamp(2.0 / scene.accuracy.target, 32.0, 1024.0));
     return options;
@@ -105,17 +105,18 @@ DirectLight::DirectLight(std::span<const geometry::ElementShape> sources, const 
 
 double DirectLight::visible_share(const Receiver& receiver, const Source& source,
                                   std::span<const double> cumulative_factors, std::uint64_t seed) const {
+    const Receiver start{receiver.ray_origin.value_or(receiver.position), receiver.normal};
     thread_local Rays rays;
     rays.reset();
     const auto probes = static_cast<std::uint32_t>(std::max(options_.probe_rays, 1));
     const auto limit = std::max(static_cast<std::uint32_t>(std::max(options_.shadow_rays, 1)), probes);
-    add_corners(receiver, source.panels, rays);
+    add_corners(start, source.panels, rays);
     for (std::uint32_t i = 0; i < probes; ++i)
-        add_sample(receiver, source.panels, cumulative_factors, core::sobol_2d(i, seed), rays);
+        add_sample(start, source.panels, cumulative_factors, core::sobol_2d(i, seed), rays);
     rays.trace(occluders_);
     if (!rays.agree()) {
         for (std::uint32_t i = probes; i < limit; ++i)
-            add_sample(receiver, source.panels, cumulative_factors, core::sobol_2d(i, seed), rays);
+            add_sample(start, source.panels, cumulative_factors, core::sobol_2d(i, seed), rays);
         rays.trace(occluders_);
     }
     return rays.all > 0.0 ? rays.visible / rays.all : 1.0;

@@ -15,8 +15,9 @@ namespace kinelux::sample {
 
 namespace {
 
-constexpr double nudge = 0.1;   ///< of the way to the middle of the triangles around a point: past the gaps that fitting leaves
-constexpr double bent = 1e-9;  ///< 1 - cosine between a triangle and its point's normal, of 4.5e-5 rad
+constexpr double nudge =
+    0.1; ///< of the way to the middle of the triangles around a point: past the gaps that fitting leaves
+constexpr double bent = 1e-9; ///< 1 - cosine between a triangle and its point's normal, of 4.5e-5 rad
 constexpr double least_cosine =
     0.1; ///< triangles seen more edge-on from their point's normal lift it no further
 constexpr double same_place = 1e-6;        ///< of the mesh's extent
@@ -170,14 +171,15 @@ void SurfaceSampler::place_receivers(const Incidence& around, double clearance) 
             const Vec3 cross = glm::cross(b, d);
             if (glm::length(cross) > 0.0) planes.push_back({x, glm::normalize(cross)});
         }
-        receiver.position = x + nudge * (middle / static_cast<double>(around[p].size()) - x);
+        Receiver start{x + nudge * (middle / static_cast<double>(around[p].size()) - x), normal};
+        receiver.ray_origin = start.position;
         const auto is_bent = [&](const Plane& plane) { return glm::dot(plane.normal, normal) < 1.0 - bent; };
         if (std::none_of(planes.begin(), planes.end(), is_bent)) return;
         for (const std::uint32_t t : around[p]) {
-            const geometry::Facet& facet = facet_at(elements_[mesh_.elements[t].value], receiver.position);
+            const geometry::Facet& facet = facet_at(elements_[mesh_.elements[t].value], start.position);
             planes.push_back({facet.corners[0], facet.normal});
         }
-        receiver.position += lift_above(planes, receiver, clearance) * normal;
+        receiver.ray_origin = start.position + lift_above(planes, start, clearance) * normal;
     });
 }
 
@@ -250,8 +252,10 @@ model::SurfaceFields SurfaceSampler::fields(const model::UnknownLayout& layout,
     const auto evaluate = [&](std::size_t p, std::vector<double>& direct, std::vector<double>& bounced) {
         const geometry::Pose& pose = poses[mesh_.point_objects[p]];
         fields.points[p] = pose.point(mesh_.points[p]);
-        direct_light.irradiance({pose.point(receivers_[p].position), pose.direction(receivers_[p].normal)}, p,
-                                direct);
+        const Receiver& rest = receivers_[p];
+        direct_light.irradiance({pose.point(rest.position), pose.direction(rest.normal),
+                                 pose.point(rest.ray_origin.value_or(rest.position))},
+                                p, direct);
         indirect(p, layout, frame.irradiance_indirect, bounced);
         const model::Material& material = scene_.materials[materials_[p].value];
         for (std::size_t c = 0; c < channels; ++c) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,7 @@
 namespace kinelux::sample {
 
 struct DirectLightOptions {
-    int probe_rays = 16;   ///< per receiver and source, besides its corners; all alike = done, 4..256
+    int probe_rays = 16;  ///< per receiver and source, besides its corners; all alike = done, 4..256
     int shadow_rays = 64; ///< per receiver and source in penumbra, >= probe_rays, up to 4096
     std::uint64_t seed = 1;
 };
@@ -26,8 +27,9 @@ DirectLightOptions direct_light_options_for(const model::Scene& scene);
 
 /// Where irradiance is wanted.
 struct Receiver {
-    Vec3 position; ///< [m], on a surface (world)
-    Vec3 normal;   ///< unit, to the lit side
+    Vec3 position;                       ///< [m], on a surface (world)
+    Vec3 normal;                         ///< unit, to the lit side
+    std::optional<Vec3> ray_origin = {}; ///< where shadow rays start instead [m], beside the position
 };
 
 /// Irradiance straight from sources: the closed form of each source's polygons as seen from the receiver (clipped at

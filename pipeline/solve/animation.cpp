@@ -183,10 +183,10 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     const double residual = frame.residual * frame.residual * square_sum(exitance) / total_area;
     std::vector<float> result(layout.elements());
     for (std::size_t e = 0; e < layout.elements(); ++e) {
-        const double basis = discretisation_error(
-            std::span(frame.irradiance_indirect)
-                .subspan(layout.offsets[e] * channels, layout.count(e) * channels),
-            layout.count(e), channels);
+        const double basis =
+            discretisation_error(std::span(frame.irradiance_indirect)
+                                     .subspan(layout.offsets[e] * channels, layout.count(e) * channels),
+                                 layout.count(e), channels);
         const double mean_square = (error[e] + basis) / areas[e] + residual;
         result[e] = static_cast<float>(std::sqrt(mean_square / static_cast<double>(channels)));
     }

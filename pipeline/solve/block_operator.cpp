@@ -10,21 +10,20 @@ namespace {
 
 // out += G x or G^T x for one block; Channels > 0 fixes the number of channels so that the loop unrolls.
 template <std::size_t Channels>
-void add_product(const float* values, bool transposed, std::size_t rows, std::size_t columns, std::size_t channels,
-                 const double* x, double* out) {
+void add_product(const float* values, bool transposed, std::size_t rows, std::size_t columns,
+                 std::size_t channels, const double* x, double* out) {
     const std::size_t n = Channels > 0 ? Channels : channels;
     const std::size_t row_step = transposed ? 1 : columns;
     const std::size_t column_step = transposed ? rows : 1;
     for (std::size_t k = 0; k < rows; ++k)
         for (std::size_t l = 0; l < columns; ++l) {
             const double value = static_cast<double>(values[k * row_step + l * column_step]);
-            for (std::size_t c = 0; c < n; ++c)
-                out[k * n + c] += value * x[l * n + c];
+            for (std::size_t c = 0; c < n; ++c) out[k * n + c] += value * x[l * n + c];
         }
 }
 
-void add_block(const float* values, bool transposed, std::size_t rows, std::size_t columns, std::size_t channels,
-               const double* x, double* out) {
+void add_block(const float* values, bool transposed, std::size_t rows, std::size_t columns,
+               std::size_t channels, const double* x, double* out) {
     if (channels == 1)
         add_product<1>(values, transposed, rows, columns, 1, x, out);
     else if (channels == 3)
@@ -35,7 +34,8 @@ void add_block(const float* values, bool transposed, std::size_t rows, std::size
 
 } // namespace
 
-void apply(const TransportOperator& transport, std::size_t channels, std::span<const double> x, std::span<double> y) {
+void apply(const TransportOperator& transport, std::size_t channels, std::span<const double> x,
+           std::span<double> y) {
     const auto& layout = transport.layout();
     core::parallel_for(layout.elements(), [&](std::size_t i) {
         transport.gather(i, channels, x, y.subspan(layout.offsets[i] * channels, layout.count(i) * channels));
@@ -43,15 +43,16 @@ void apply(const TransportOperator& transport, std::size_t channels, std::span<c
 }
 
 BlockOperator::BlockOperator(const model::UnknownLayout& layout, const model::BlockSet& static_blocks)
-    : layout_(layout), static_blocks_(static_blocks), static_rows_(rows_of(static_blocks, layout.elements())),
+    : layout_(layout),
+      static_blocks_(static_blocks),
+      static_rows_(rows_of(static_blocks, layout.elements())),
       replacing_rows_(layout.elements()) {}
 
 BlockOperator::Rows BlockOperator::rows_of(const model::BlockSet& blocks, std::size_t elements) {
     Rows rows(elements);
     // Entries are sorted by (i, j): every row receives its smaller neighbours (as transposes) before its larger ones.
     for (const model::BlockEntry& entry : blocks.entries)
-        if (entry.i != entry.j)
-            rows[entry.j].push_back({entry.i, true, false, &blocks.values[entry.offset]});
+        if (entry.i != entry.j) rows[entry.j].push_back({entry.i, true, false, &blocks.values[entry.offset]});
     for (const model::BlockEntry& entry : blocks.entries)
         rows[entry.i].push_back({entry.j, false, false, &blocks.values[entry.offset]});
     return rows;
@@ -61,8 +62,7 @@ void BlockOperator::mark(std::uint32_t element, std::uint32_t neighbour, bool re
     auto& row = static_rows_[element];
     const auto found = std::lower_bound(row.begin(), row.end(), neighbour,
                                         [](const Neighbour& n, std::uint32_t id) { return n.element < id; });
-    if (found != row.end() && found->element == neighbour)
-        found->replaced = replaced;
+    if (found != row.end() && found->element == neighbour) found->replaced = replaced;
 }
 
 void BlockOperator::replace(std::span<const model::ElementPair> pairs, const model::BlockSet& blocks) {

@@ -10,8 +10,7 @@ namespace {
 
 double norm(std::span<const double> values) {
     double sum = 0.0;
-    for (const double value : values)
-        sum += value * value;
+    for (const double value : values) sum += value * value;
     return std::sqrt(sum);
 }
 
@@ -34,8 +33,8 @@ std::vector<double> residual_of(const System& system, std::span<const double> ra
         for (std::size_t u = layout.offsets[i]; u < layout.offsets[i + 1]; ++u)
             for (std::size_t c = 0; c < system.channels; ++c) {
                 const std::size_t k = u * system.channels + c;
-                residual[k] =
-                    system.exitance[k] + system.reflectance[i * system.channels + c] * irradiance[k] - radiosity[k];
+                residual[k] = system.exitance[k] +
+                              system.reflectance[i * system.channels + c] * irradiance[k] - radiosity[k];
             }
     return residual;
 }
@@ -65,8 +64,7 @@ void gauss_seidel(const System& system, const SolveOptions& options, double scal
     while (true) {
         apply(system.transport, system.channels, solution.radiosity, solution.irradiance);
         const double residual = norm(residual_of(system, solution.radiosity, solution.irradiance));
-        if (residual <= options.tolerance * scale || solution.sweeps >= options.max_sweeps)
-            return;
+        if (residual <= options.tolerance * scale || solution.sweeps >= options.max_sweeps) return;
         double change = residual;
         while (change > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
             change = sweep(system, solution.radiosity);
@@ -87,16 +85,19 @@ void shoot(const System& system, const SolveOptions& options, double scale, Syst
         std::size_t shooter = 0;
         double most = -1.0;
         for (std::size_t i = 0; i < layout.elements(); ++i) {
-            const double power = norm(std::span(unshot).subspan(layout.offsets[i] * channels, layout.count(i) * channels)) *
-                                 std::sqrt(system.areas[i]);
+            const double power =
+                norm(std::span(unshot).subspan(layout.offsets[i] * channels, layout.count(i) * channels)) *
+                std::sqrt(system.areas[i]);
             if (power > most) {
                 most = power;
                 shooter = i;
             }
         }
-        const std::size_t first = layout.offsets[shooter] * channels, count = layout.count(shooter) * channels;
+        const std::size_t first = layout.offsets[shooter] * channels,
+                          count = layout.count(shooter) * channels;
         std::fill(arriving.begin(), arriving.end(), 0.0);
-        system.transport.scatter(shooter, channels, std::span<const double>(unshot).subspan(first, count), arriving);
+        system.transport.scatter(shooter, channels, std::span<const double>(unshot).subspan(first, count),
+                                 arriving);
         for (std::size_t k = first; k < first + count; ++k) {
             solution.radiosity[k] += unshot[k];
             unshot[k] = 0.0;
@@ -104,7 +105,8 @@ void shoot(const System& system, const SolveOptions& options, double scale, Syst
         for (std::size_t i = 0; i < layout.elements(); ++i)
             for (std::size_t u = layout.offsets[i]; u < layout.offsets[i + 1]; ++u)
                 for (std::size_t c = 0; c < channels; ++c)
-                    unshot[u * channels + c] += system.reflectance[i * channels + c] * arriving[u * channels + c];
+                    unshot[u * channels + c] +=
+                        system.reflectance[i * channels + c] * arriving[u * channels + c];
         ++shots;
     }
     solution.sweeps = static_cast<std::uint32_t>((shots + layout.elements() - 1) / layout.elements());
@@ -113,13 +115,13 @@ void shoot(const System& system, const SolveOptions& options, double scale, Syst
 
 } // namespace
 
-SystemSolution solve_system(const System& system, const SolveOptions& options, std::span<const double> start) {
+SystemSolution solve_system(const System& system, const SolveOptions& options,
+                            std::span<const double> start) {
     SystemSolution solution;
     const double scale = norm(system.exitance);
     solution.radiosity.assign(system.exitance.size(), 0.0);
     solution.irradiance.assign(system.exitance.size(), 0.0);
-    if (!(scale > 0.0))
-        return solution;
+    if (!(scale > 0.0)) return solution;
     if (options.method == Method::Shooting) {
         shoot(system, options, scale, solution);
     } else {

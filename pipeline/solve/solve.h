@@ -12,13 +12,13 @@
 namespace kinelux::solve {
 
 enum class Method : std::uint8_t {
-    Shooting,    ///< progressive refinement from zero: the element with the most unshot flux shoots; the paper's baseline
+    Shooting, ///< progressive refinement from zero: the element with the most unshot flux shoots; the paper's baseline
     GaussSeidel, ///< sweeps from the extrapolated previous frames
 };
 
 struct SolveOptions {
     Method method = Method::GaussSeidel;
-    double tolerance = 1e-4;        ///< of the residual relative to the exitance, ||r|| / ||M|| [1], 1e-14..0.1
+    double tolerance = 1e-4; ///< of the residual relative to the exitance, ||r|| / ||M|| [1], 1e-14..0.1
     std::uint32_t max_sweeps = 1000; ///< a shot counts as 1 / elements of a sweep
 };
 
@@ -35,8 +35,8 @@ struct SystemSolution {
     std::vector<double> radiosity;  ///< B, unknowns x channels
     std::vector<double> irradiance; ///< G B, unknowns x channels
     std::uint32_t sweeps = 0;
-    double residual = 0.0;         ///< ||M + rho G B - B|| / ||M|| [1], recomputed exactly at the end
-    double unshot = 0.0;           ///< flux still unshot (norm 1 of the residual's constant parts) / flux emitted [1]
+    double residual = 0.0; ///< ||M + rho G B - B|| / ||M|| [1], recomputed exactly at the end
+    double unshot = 0.0;   ///< flux still unshot (norm 1 of the residual's constant parts) / flux emitted [1]
     bool converged = true;
 };
 

@@ -7,21 +7,24 @@
 
 namespace kinelux::solve {
 
-TemporalSolver::TemporalSolver(std::size_t channels, std::vector<double> exitance, std::vector<double> reflectance,
-                               std::vector<double> areas, const SolveOptions& options)
-    : channels_(channels), exitance_(std::move(exitance)), reflectance_(std::move(reflectance)),
-      areas_(std::move(areas)), options_(options) {}
+TemporalSolver::TemporalSolver(std::size_t channels, std::vector<double> exitance,
+                               std::vector<double> reflectance, std::vector<double> areas,
+                               const SolveOptions& options)
+    : channels_(channels),
+      exitance_(std::move(exitance)),
+      reflectance_(std::move(reflectance)),
+      areas_(std::move(areas)),
+      options_(options) {}
 
 // The polynomial through the last frames, continued by one: b1, 2 b1 - b2, 3 b1 - 3 b2 + b3.
 std::vector<double> TemporalSolver::extrapolated() const {
-    static constexpr std::array<std::array<double, 3>, 4> weights{{{0, 0, 0}, {1, 0, 0}, {2, -1, 0}, {3, -3, 1}}};
-    if (previous_.empty())
-        return {};
+    static constexpr std::array<std::array<double, 3>, 4> weights{
+        {{0, 0, 0}, {1, 0, 0}, {2, -1, 0}, {3, -3, 1}}};
+    if (previous_.empty()) return {};
     const auto& w = weights[previous_.size()];
     std::vector<double> start(previous_.front().size(), 0.0);
     for (std::size_t p = 0; p < previous_.size(); ++p)
-        for (std::size_t k = 0; k < start.size(); ++k)
-            start[k] += w[p] * previous_[p][k];
+        for (std::size_t k = 0; k < start.size(); ++k) start[k] += w[p] * previous_[p][k];
     return start;
 }
 
@@ -30,7 +33,8 @@ std::vector<double> TemporalSolver::emitted_irradiance(const TransportOperator& 
     const auto& layout = transport.layout();
     std::vector<double> irradiance(exitance_.size());
     for (std::size_t i = 0; i < layout.elements(); ++i) {
-        const auto own = std::span(exitance_).subspan(layout.offsets[i] * channels_, layout.count(i) * channels_);
+        const auto own =
+            std::span(exitance_).subspan(layout.offsets[i] * channels_, layout.count(i) * channels_);
         if (std::any_of(own.begin(), own.end(), [](double value) { return value != 0.0; }))
             transport.scatter(i, channels_, own, irradiance);
     }
@@ -53,8 +57,7 @@ model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transp
     frame.radiosity = solved.radiosity;
 
     previous_.insert(previous_.begin(), std::move(solved.radiosity));
-    if (previous_.size() > 3)
-        previous_.pop_back();
+    if (previous_.size() > 3) previous_.pop_back();
     return frame;
 }
 

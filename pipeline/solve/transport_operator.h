@@ -24,7 +24,8 @@ public:
 };
 
 /// y = G x, rows in parallel, the same bytes at any thread count.
-void apply(const TransportOperator& transport, std::size_t channels, std::span<const double> x, std::span<double> y);
+void apply(const TransportOperator& transport, std::size_t channels, std::span<const double> x,
+           std::span<double> y);
 
 /// Stored blocks: a static set, some of whose pairs another set replaces for now.
 class BlockOperator : public TransportOperator {

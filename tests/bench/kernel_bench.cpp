@@ -2,9 +2,9 @@
 // Transport blocks per second by kind of pair, and the solver's sweep. One thread unless said.
 #include <benchmark/benchmark.h>
 
+#include "coefficients/coefficients.h"
 #include "kernel/transport.h"
 #include "solve/transport_operator.h"
-#include "coefficients/coefficients.h"
 #include "support/shapes.h"
 
 namespace kinelux {
@@ -47,7 +47,8 @@ void room_coefficients(benchmark::State& state) {
     const auto occluders = support::occluders_of(set, scene);
     double pairs = 0.0;
     for (auto _ : state) {
-        const auto result = coefficients::compute_coefficients(shapes, scene, {.degree = 2}, occluders, {}, 1e6);
+        const auto result =
+            coefficients::compute_coefficients(shapes, scene, {.degree = 2}, occluders, {}, 1e6);
         pairs += result.pairs_examined;
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(pairs));
@@ -60,13 +61,14 @@ void sweep(benchmark::State& state) {
     const auto scene = support::plain_scene(1);
     const auto shapes = support::shapes_of(set, 5, 2);
     const auto occluders = support::occluders_of(set, scene);
-    const auto coefficients = coefficients::compute_coefficients(shapes, scene, {.degree = 2}, occluders, {}, 1e6);
+    const auto coefficients =
+        coefficients::compute_coefficients(shapes, scene, {.degree = 2}, occluders, {}, 1e6);
     const solve::BlockOperator blocks(coefficients.layout, coefficients.static_blocks);
     std::vector<double> x(coefficients.layout.unknowns() * 3, 1.0), y(x.size());
-    for (auto _ : state)
-        solve::apply(blocks, 3, x, y);
-    state.SetBytesProcessed(static_cast<std::int64_t>(2 * coefficients.static_blocks.values.size() * sizeof(float)) *
-                            state.iterations());
+    for (auto _ : state) solve::apply(blocks, 3, x, y);
+    state.SetBytesProcessed(
+        static_cast<std::int64_t>(2 * coefficients.static_blocks.values.size() * sizeof(float)) *
+        state.iterations());
 }
 BENCHMARK(sweep)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 

@@ -272,10 +272,11 @@ CleanResult panel_in_ceiling(Panel kind) {
     if (kind == Panel::Emitting) object.mesh.materials.assign(2, MaterialId(1));
     if (kind == Panel::Sliding) {
         object.motion = MotionId(0);
-        scene.motions = {{"slide",
-                          model::Interpolation::Linear,
-                          Vec3{0.0},
-                          {{0.0, Vec3{0.0}, Quat{1, 0, 0, 0}}, {1.0, Vec3{2.0, 0.0, 0.0}, Quat{1, 0, 0, 0}}}}};
+        scene.motions = {
+            {"slide",
+             model::Interpolation::Linear,
+             Vec3{0.0},
+             {{0.0, Vec3{0.0}, Quat{1, 0, 0, 0}}, {1.0, Vec3{2.0, 0.0, 0.0}, Quat{1, 0, 0, 0}}}}};
     }
     return cleaned(std::move(scene));
 }
@@ -285,9 +286,11 @@ TEST(Clean, lamps_and_sliding_panels_within_a_ceiling_are_lifted_to_its_front) {
         const CleanResult result = panel_in_ceiling(kind);
         for (const Vec3& point : result.scene.objects[1].mesh.points) EXPECT_NEAR(point.z, 2.0 - 2e-5, 1e-12);
         for (const Vec3& point : result.scene.objects[0].mesh.points) EXPECT_EQ(point.z, 2.0);
-        EXPECT_EQ(result.reports[1].notes.size(), panel_in_ceiling(Panel::Neither).reports[1].notes.size() + 1);
+        EXPECT_EQ(result.reports[1].notes.size(),
+                  panel_in_ceiling(Panel::Neither).reports[1].notes.size() + 1);
     }
-    for (const Vec3& point : panel_in_ceiling(Panel::Neither).scene.objects[1].mesh.points) EXPECT_EQ(point.z, 2.0);
+    for (const Vec3& point : panel_in_ceiling(Panel::Neither).scene.objects[1].mesh.points)
+        EXPECT_EQ(point.z, 2.0);
 }
 
 TEST(Clean, merging_never_eats_area) {

@@ -35,8 +35,7 @@ TEST(Sobol, every_power_of_two_block_fills_every_elementary_interval) {
 TEST(Random, has_mean_one_half_and_differs_between_seeds) {
     Random a(1), b(2);
     double sum = 0.0;
-    for (int k = 0; k < 10000; ++k)
-        sum += a.next();
+    for (int k = 0; k < 10000; ++k) sum += a.next();
     EXPECT_NEAR(sum / 10000.0, 0.5, 5.0 / std::sqrt(12.0 * 10000.0)); // five standard deviations
     EXPECT_NE(a.next(), b.next());
 }
@@ -73,9 +72,12 @@ TEST(RunRecord, nests_keys_and_measures_steps) {
 TEST(ParallelFor, visits_every_index_once_and_hands_on_exceptions) {
     std::vector<std::atomic<int>> visits(1000);
     parallel_for(visits.size(), [&](std::size_t i) { ++visits[i]; });
-    for (const auto& count : visits)
-        EXPECT_EQ(count.load(), 1);
-    EXPECT_THROW(parallel_for(10, [](std::size_t i) { if (i == 3) throw GeometryError("face 3"); }), GeometryError);
+    for (const auto& count : visits) EXPECT_EQ(count.load(), 1);
+    EXPECT_THROW(parallel_for(10,
+                              [](std::size_t i) {
+                                  if (i == 3) throw GeometryError("face 3");
+                              }),
+                 GeometryError);
 }
 
 } // namespace

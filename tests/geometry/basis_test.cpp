@@ -19,8 +19,9 @@ std::vector<DomainPoint> rule_on(const Triangles& triangles, int degree) {
         const Vec2 e1 = t[1] - t[0], e2 = t[2] - t[0];
         const double area = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x);
         for (const TriangleNode& node : triangle_rule(degree))
-            rule.push_back({node.barycentric[0] * t[0] + node.barycentric[1] * t[1] + node.barycentric[2] * t[2],
-                            node.weight * area});
+            rule.push_back(
+                {node.barycentric[0] * t[0] + node.barycentric[1] * t[1] + node.barycentric[2] * t[2],
+                 node.weight * area});
     }
     return rule;
 }
@@ -38,8 +39,7 @@ double orthonormality_defect(const Triangles& domain, int degree) {
     for (const DomainPoint& p : rule) {
         basis.evaluate(p.parameter, values);
         for (std::size_t k = 0; k < n; ++k)
-            for (std::size_t l = 0; l < n; ++l)
-                gram[k * n + l] += p.weight * values[k] * values[l];
+            for (std::size_t l = 0; l < n; ++l) gram[k * n + l] += p.weight * values[k] * values[l];
     }
     double defect = 0.0;
     for (std::size_t k = 0; k < n; ++k)
@@ -51,7 +51,8 @@ double orthonormality_defect(const Triangles& domain, int degree) {
 TEST(Basis, is_orthonormal_on_squares_frames_and_slivers) {
     const Vec2 far(10.0, 10.0), along(0.8, 0.6), across(-0.6e-4, 0.8e-4);
     Triangles frame = rectangle(0, 0, 1, 0.015);
-    for (const auto& part : {rectangle(0, 0.985, 1, 1), rectangle(0, 0.015, 0.015, 0.985), rectangle(0.985, 0.015, 1, 0.985)})
+    for (const auto& part :
+         {rectangle(0, 0.985, 1, 1), rectangle(0, 0.015, 0.015, 0.985), rectangle(0.985, 0.015, 1, 0.985)})
         frame.insert(frame.end(), part.begin(), part.end());
     for (int degree = 0; degree <= max_degree; ++degree) {
         EXPECT_LT(orthonormality_defect(rectangle(0, 0, 1, 1), degree), 1e-13);
@@ -84,7 +85,8 @@ TEST(Quadrature, triangle_rules_are_exact_to_their_degree) {
             const int q = degree - p;
             double sum = 0.0, weights = 0.0;
             for (const TriangleNode& node : triangle_rule(degree)) {
-                sum += 0.5 * node.weight * std::pow(node.barycentric[1], p) * std::pow(node.barycentric[2], q);
+                sum +=
+                    0.5 * node.weight * std::pow(node.barycentric[1], p) * std::pow(node.barycentric[2], q);
                 weights += node.weight;
                 EXPECT_GT(node.weight, 0.0);
                 EXPECT_GT(*std::min_element(node.barycentric.begin(), node.barycentric.end()), 0.0);
@@ -110,7 +112,8 @@ TEST(Quadrature, compressed_rule_keeps_moments_with_few_positive_weights) {
                 full += point.weight * std::pow(point.parameter.x, p) * std::pow(point.parameter.y, q);
             for (const auto& [index, weight] : *kept) {
                 EXPECT_GT(weight, 0.0);
-                short_sum += weight * std::pow(rule[index].parameter.x, p) * std::pow(rule[index].parameter.y, q);
+                short_sum +=
+                    weight * std::pow(rule[index].parameter.x, p) * std::pow(rule[index].parameter.y, q);
             }
             EXPECT_NEAR(short_sum, full, 1e-11);
         }

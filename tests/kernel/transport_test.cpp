@@ -27,8 +27,8 @@ double form_factor(const model::Patch& a, const model::Patch& b, double toleranc
 double parallel_squares(double distance) {
     const double x = 1.0 / distance, x2 = x * x;
     return 2.0 / (std::numbers::pi * x2) *
-           (std::log((1.0 + x2) / std::sqrt(1.0 + 2.0 * x2)) + 2.0 * x * std::sqrt(1.0 + x2) * std::atan(x / std::sqrt(1.0 + x2)) -
-            2.0 * x * std::atan(x));
+           (std::log((1.0 + x2) / std::sqrt(1.0 + 2.0 * x2)) +
+            2.0 * x * std::sqrt(1.0 + x2) * std::atan(x / std::sqrt(1.0 + x2)) - 2.0 * x * std::atan(x));
 }
 
 TEST(Transport, facing_unit_squares_meet_the_closed_form) {
@@ -44,12 +44,12 @@ TEST(Transport, facing_unit_squares_meet_the_closed_form) {
 
 TEST(Transport, hinged_unit_squares_meet_the_closed_form) {
     // Shared edge; values by Lambert's contour with graded Gauss quadrature, 90 degrees also Howell C-14.
-    const std::pair<double, double> hinges[] = {{30, 0.6190283}, {45, 0.4833477}, {60, 0.3709053},
+    const std::pair<double, double> hinges[] = {{30, 0.6190283}, {45, 0.4833477},  {60, 0.3709053},
                                                 {90, 0.2000438}, {120, 0.0866150}, {150, 0.0213453}};
     for (const auto& [angle, expected] : hinges) {
         const double a = angle * std::numbers::pi / 180.0;
         const auto floor = rectangle(Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0));
-        const auto wall = rectangle(Vec3(0), Vec3(0, 1, 0) , Vec3(std::cos(a), 0, std::sin(a)));
+        const auto wall = rectangle(Vec3(0), Vec3(0, 1, 0), Vec3(std::cos(a), 0, std::sin(a)));
         EXPECT_NEAR(form_factor(floor, wall, 1e-3) / expected, 1.0, 2e-3) << "angle " << angle;
     }
 }
@@ -91,8 +91,7 @@ TEST(Transport, rows_of_a_closed_box_sum_to_one) {
             double sum = 0.0;
             for (const auto& b : shapes) {
                 const auto block = transport(a, b, occluders, {});
-                if (!block.values.empty())
-                    sum += block.values[0] * std::sqrt(b.area / a.area);
+                if (!block.values.empty()) sum += block.values[0] * std::sqrt(b.area / a.area);
             }
             EXPECT_NEAR(sum, 1.0, 3e-3) << "n " << n << " element " << a.id.value;
         }
@@ -101,7 +100,8 @@ TEST(Transport, rows_of_a_closed_box_sum_to_one) {
 
 TEST(Transport, a_wall_between_hides) {
     model::PatchSet set;
-    set.patches = {rectangle(Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0)), rectangle(Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 0, 0)),
+    set.patches = {rectangle(Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+                   rectangle(Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 0, 0)),
                    rectangle(Vec3(-2, -2, 0.5), Vec3(5, 0, 0), Vec3(0, 5, 0)),
                    rectangle(Vec3(-2, -2, 0.5), Vec3(2.5, 0, 0), Vec3(0, 5, 0))};
     const auto shapes = support::shapes_of(set, 1, 2);
@@ -111,7 +111,8 @@ TEST(Transport, a_wall_between_hides) {
     // Only x < 0.5 covered at half height: by symmetry the shares that pass and that are cut off are equal.
     set.patches.erase(set.patches.begin() + 2);
     const auto half = transport(shapes[0], shapes[1], support::occluders_of(set, scene), {});
-    const auto open = transport(shapes[0], shapes[1], support::occluders_of(set, scene), {.occlusion = false});
+    const auto open =
+        transport(shapes[0], shapes[1], support::occluders_of(set, scene), {.occlusion = false});
     EXPECT_NEAR(half.values.at(0) / open.values.at(0), 0.5, 0.03);
 }
 
@@ -119,7 +120,8 @@ TEST(PolygonIrradiance, meets_the_parallel_rectangle_formula) {
     // Howell B-3: a corner-aligned parallel rectangle a x b at distance c.
     const double a = 1.3, b = 0.6, c = 0.8, x = a / c, y = b / c;
     const double expected = (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
-                             y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) / (2 * std::numbers::pi);
+                             y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y))) /
+                            (2 * std::numbers::pi);
     const std::vector<Vec3> corners{Vec3(0, 0, c), Vec3(0, b, c), Vec3(a, b, c), Vec3(a, 0, c)};
     EXPECT_NEAR(point_to_polygon(Vec3(0), Vec3(0, 0, 1), corners), expected, 1e-14);
 }
@@ -127,7 +129,8 @@ TEST(PolygonIrradiance, meets_the_parallel_rectangle_formula) {
 TEST(PolygonIrradiance, of_a_half_space_below_the_horizon_is_cut) {
     // A huge wall standing on the receiver's plane fills half the hemisphere's projection: 1/2.
     const double huge = 1e6;
-    const std::vector<Vec3> wall{Vec3(1, -huge, -huge), Vec3(1, -huge, huge), Vec3(1, huge, huge), Vec3(1, huge, -huge)};
+    const std::vector<Vec3> wall{Vec3(1, -huge, -huge), Vec3(1, -huge, huge), Vec3(1, huge, huge),
+                                 Vec3(1, huge, -huge)};
     EXPECT_NEAR(point_to_polygon(Vec3(0), Vec3(0, 0, 1), wall), 0.5, 1e-5);
     EXPECT_EQ(point_to_polygon(Vec3(2, 0, 0), Vec3(0, 0, 1), wall), 0.0) << "seen from behind";
     EXPECT_EQ(point_to_polygon(Vec3(1, 0, 0), Vec3(0, 0, 1), wall), 0.0) << "in its plane";

@@ -10,8 +10,7 @@ namespace {
 
 const model::Effect& effect(const model::Plan& plan, const std::string& name) {
     for (const auto& e : plan.effects)
-        if (e.name == name)
-            return e;
+        if (e.name == name) return e;
     throw std::runtime_error("no effect " + name);
 }
 
@@ -43,7 +42,10 @@ TEST(Plan, grey_scenes_are_computed_in_one_channel) {
 TEST(Plan, a_motion_that_goes_nowhere_is_no_motion) {
     Room room;
     room.scene.time = {0.0, 1.0, 10};
-    room.scene.motions = {{"m", model::Interpolation::Linear, Vec3(0), {{0.0, Vec3(1), Quat(1, 0, 0, 0)}, {1.0, Vec3(1), Quat(1, 0, 0, 0)}}}};
+    room.scene.motions = {{"m",
+                           model::Interpolation::Linear,
+                           Vec3(0),
+                           {{0.0, Vec3(1), Quat(1, 0, 0, 0)}, {1.0, Vec3(1), Quat(1, 0, 0, 0)}}}};
     room.scene.objects[1].motion = MotionId(0);
     EXPECT_TRUE(room.plan().moving_objects.empty());
     room.scene.motions[0].keyframes[1].translation = Vec3(2);

@@ -76,7 +76,8 @@ TEST(DirectLight, distant_panels_keep_their_closed_form_within_a_thousandth) {
 
 TEST(DirectLight, a_half_hidden_lamp_gives_the_closed_form_of_its_visible_half) {
     // The shutter covers x < 0 right below the lamp.
-    const Lit lit({lamp(), support::rectangle({-3, -3, 0.999}, {3, 0, 0}, {0, 6, 0}, ObjectId(1))}, 4);
+    const Lit lit({lamp(), support::rectangle({-3, -3, 0.999}, {3, 0, 0}, {0, 6, 0}, ObjectId(1))}, 4,
+                  {.shadow_rays = 256});
     double sum = 0.0;
     for (std::uint64_t i = 0; i < 100; ++i) {
         const Vec2 s = core::sobol_2d(static_cast<std::uint32_t>(i), 3);

@@ -21,16 +21,16 @@ struct RandomTransport {
             layout.offsets.push_back(layout.offsets.back() + 1 + static_cast<std::uint32_t>(e % 3));
         for (std::uint32_t i = 0; i < elements; ++i)
             for (std::uint32_t j = i; j < elements; ++j) {
-                if (random.next() < 0.3)
-                    continue;
+                if (random.next() < 0.3) continue;
                 blocks.entries.push_back({i, j, blocks.values.size(), 0.0f});
                 const bool self = i == j;
                 for (std::size_t k = 0; k < layout.count(i); ++k)
                     for (std::size_t l = 0; l < layout.count(j); ++l) {
                         const bool mirrored = self && l < k;
                         const std::size_t twin = blocks.entries.back().offset + l * layout.count(j) + k;
-                        blocks.values.push_back(mirrored ? blocks.values[twin]
-                                                         : static_cast<float>(random.next() / static_cast<double>(2 * elements)));
+                        blocks.values.push_back(
+                            mirrored ? blocks.values[twin]
+                                     : static_cast<float>(random.next() / static_cast<double>(2 * elements)));
                     }
             }
     }
@@ -39,8 +39,7 @@ struct RandomTransport {
 std::vector<double> random_vector(std::size_t size, std::uint64_t seed) {
     core::Random random(seed);
     std::vector<double> result(size);
-    for (double& value : result)
-        value = random.next() - 0.3;
+    for (double& value : result) value = random.next() - 0.3;
     return result;
 }
 
@@ -49,16 +48,17 @@ struct KnownAnswer {
     BlockOperator blocks{transport.layout, transport.blocks};
     std::size_t channels = 3;
     std::vector<double> answer = random_vector(transport.layout.unknowns() * 3, 11);
-    std::vector<double> reflectance = std::vector<double>(40 * 3, 0.0), areas = std::vector<double>(40, 1.0), exitance;
+    std::vector<double> reflectance = std::vector<double>(40 * 3, 0.0), areas = std::vector<double>(40, 1.0),
+                        exitance;
 
     KnownAnswer() {
         core::Random random(3);
-        for (double& rho : reflectance)
-            rho = 0.9 * random.next();
+        for (double& rho : reflectance) rho = 0.9 * random.next();
         exitance.resize(answer.size());
         apply(blocks, channels, answer, exitance);
         for (std::size_t e = 0; e < 40; ++e)
-            for (std::size_t k = transport.layout.offsets[e] * channels; k < transport.layout.offsets[e + 1] * channels; ++k)
+            for (std::size_t k = transport.layout.offsets[e] * channels;
+                 k < transport.layout.offsets[e + 1] * channels; ++k)
                 exitance[k] = answer[k] - reflectance[e * channels + k % channels] * exitance[k];
     }
     System system() const { return {blocks, channels, exitance, reflectance, areas}; }
@@ -97,8 +97,7 @@ TEST(Solve, too_few_sweeps_are_reported_not_hidden) {
 TEST(Solve, without_emitters_all_is_dark) {
     KnownAnswer known;
     std::fill(known.exitance.begin(), known.exitance.end(), 0.0);
-    for (const double value : solve_system(known.system(), {}, {}).radiosity)
-        EXPECT_EQ(value, 0.0);
+    for (const double value : solve_system(known.system(), {}, {}).radiosity) EXPECT_EQ(value, 0.0);
 }
 
 TEST(BlockOperator, scatter_is_gather_seen_from_the_source) {
@@ -108,9 +107,9 @@ TEST(BlockOperator, scatter_is_gather_seen_from_the_source) {
     std::vector<double> gathered(x.size()), scattered(x.size());
     apply(blocks, 1, x, gathered);
     for (std::size_t e = 0; e < 17; ++e)
-        blocks.scatter(e, 1, std::span(x).subspan(random.layout.offsets[e], random.layout.count(e)), scattered);
-    for (std::size_t k = 0; k < x.size(); ++k)
-        EXPECT_NEAR(gathered[k], scattered[k], 1e-14);
+        blocks.scatter(e, 1, std::span(x).subspan(random.layout.offsets[e], random.layout.count(e)),
+                       scattered);
+    for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(gathered[k], scattered[k], 1e-14);
 }
 
 TEST(BlockOperator, replaced_blocks_hold_until_the_next_replacement) {
@@ -122,8 +121,7 @@ TEST(BlockOperator, replaced_blocks_hold_until_the_next_replacement) {
     apply(blocks, 1, x, before);
     std::vector<model::ElementPair> pairs;
     for (std::uint32_t i = 0; i < 12; ++i)
-        for (std::uint32_t j = i; j < 12; ++j)
-            pairs.push_back({i, j});
+        for (std::uint32_t j = i; j < 12; ++j) pairs.push_back({i, j});
     blocks.replace(pairs, other.blocks);
     apply(blocks, 1, x, all_replaced);
     apply(truth, 1, x, expected);
@@ -157,7 +155,10 @@ TEST(TemporalSolver, follows_a_fading_source_and_starts_near_the_answer) {
     for (std::size_t k = 0; k < first.radiosity.size(); ++k) {
         const double rho = known.reflectance[0];
         if (k < 3 && rho > 0.0) {
-            EXPECT_NEAR(first.radiosity[k], known.exitance[k] + known.reflectance[k] * (first.irradiance_direct[k] + first.irradiance_indirect[k]), 1e-6);
+            EXPECT_NEAR(first.radiosity[k],
+                        known.exitance[k] + known.reflectance[k] *
+                                                (first.irradiance_direct[k] + first.irradiance_indirect[k]),
+                        1e-6);
         }
     }
 }

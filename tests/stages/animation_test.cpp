@@ -93,9 +93,21 @@ TEST(IrradianceErrors, follow_block_errors_and_brightness) {
     const std::vector<double> areas{1.0, 4.0}, exitance{3.0, 0.0};
     model::FrameSolution frame;
     frame.radiosity = {3.0, 2.0};
+    frame.irradiance_indirect = {0.0, 0.0};
     const auto errors = solve::irradiance_errors(layout, entries, areas, exitance, frame, 1);
     EXPECT_FLOAT_EQ(errors[0], 1.0f);  // 0.5 * 2 / sqrt(1)
     EXPECT_FLOAT_EQ(errors[1], 0.75f); // 0.5 * 3 / sqrt(4)
+}
+
+TEST(IrradianceErrors, take_the_highest_degree_for_what_the_basis_leaves_out) {
+    const model::UnknownLayout layout{{0, 6, 7}}; // degree 2, degree 0
+    const std::vector<double> areas{4.0, 1.0}, exitance(7, 0.0);
+    model::FrameSolution frame;
+    frame.radiosity.assign(7, 0.0);
+    frame.irradiance_indirect = {9.0, 5.0, 5.0, 1.0, 2.0, 2.0, 7.0};
+    const auto errors = solve::irradiance_errors(layout, {}, areas, exitance, frame, 1);
+    EXPECT_FLOAT_EQ(errors[0], 1.5f); // sqrt((1 + 4 + 4) / 4)
+    EXPECT_FLOAT_EQ(errors[1], 0.7f); // a tenth of a constant
 }
 
 } // namespace

@@ -12,8 +12,8 @@
 namespace kinelux::support {
 
 /// A parallelogram patch at `corner`, facing edge_u x edge_v (perpendicular edges), of object and material 0.
-inline model::Patch rectangle(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v, ObjectId object = {},
-                              MaterialId material = {}) {
+inline model::Patch rectangle(const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v,
+                              ObjectId object = {}, MaterialId material = {}) {
     model::Patch patch;
     patch.object = object;
     patch.material = material;
@@ -35,8 +35,9 @@ inline model::Patch rectangle(const Vec3& corner, const Vec3& edge_u, const Vec3
 enum class Facing { Inwards, Outwards };
 inline std::vector<model::Patch> box(const Vec3& low, const Vec3& high, Facing facing) {
     const Vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
-    std::vector<model::Patch> patches{rectangle(low, x, y),     rectangle(low + z, y, x), rectangle(low, y, z),
-                                      rectangle(low + x, z, y), rectangle(low, z, x),     rectangle(low + y, x, z)};
+    std::vector<model::Patch> patches{rectangle(low, x, y), rectangle(low + z, y, x),
+                                      rectangle(low, y, z), rectangle(low + x, z, y),
+                                      rectangle(low, z, x), rectangle(low + y, x, z)};
     if (facing == Facing::Outwards)
         patches = {rectangle(low, y, x),     rectangle(low + z, x, y), rectangle(low, z, y),
                    rectangle(low + x, y, z), rectangle(low, x, z),     rectangle(low + y, z, x)};
@@ -79,8 +80,7 @@ inline model::Scene plain_scene(std::size_t objects, double reflectance = 0.5, d
     scene.channels = {"grey"};
     scene.materials = {{"grey", {reflectance}, {exitance}, model::Sides::Front}};
     scene.objects.resize(objects);
-    for (std::size_t o = 0; o < objects; ++o)
-        scene.objects[o].name = "object" + std::to_string(o);
+    for (std::size_t o = 0; o < objects; ++o) scene.objects[o].name = "object" + std::to_string(o);
     return scene;
 }
 
