@@ -156,4 +156,22 @@ Vec2 plane_parameters(const model::Surface& surface, const Vec3& x) {
     return {glm::dot(offset, surface.axis_u), glm::dot(offset, surface.axis_v)};
 }
 
+double area(const model::Patch& patch) {
+    double sum = 0.0;
+    for (const model::Triangle& t : patch.triangles) {
+        const Vec2 &p = patch.points[t[0]], a = patch.points[t[1]] - p, b = patch.points[t[2]] - p;
+        sum += 0.5 * std::abs(a.x * b.y - a.y * b.x) * evaluate(patch.surface, p + (a + b) / 3.0).area_factor;
+    }
+    return sum;
+}
+
+double area(const model::SmallTriangles& small) {
+    double sum = 0.0;
+    for (const auto& [a, b, c] : small.triangles) {
+        const Vec3& p = small.points[a];
+        sum += 0.5 * glm::length(glm::cross(small.points[b] - p, small.points[c] - p));
+    }
+    return sum;
+}
+
 } // namespace kinelux::geometry

@@ -20,4 +20,9 @@ SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv);
 /// Parameters of the point of a plane nearest to x. @param surface  a Plane
 Vec2 plane_parameters(const model::Surface& surface, const Vec3& x);
 
+/// Area of a patch [m2], by one node per triangle of its domain: exact on planes, cylinders and cones.
+double area(const model::Patch& patch);
+/// Area of all small triangles [m2].
+double area(const model::SmallTriangles& small);
+
 } // namespace kinelux::geometry

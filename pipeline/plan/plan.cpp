@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "geometry/surface.h"
+
 namespace kinelux::plan {
 
 namespace {
@@ -17,19 +19,10 @@ using model::Scene;
 
 constexpr double coarse_target = 0.05; ///< above it degree 1 is enough on elements of the size chosen for it
 
-double patch_area(const model::Patch& patch) {
-    double area = 0.0;
-    for (const model::Triangle& t : patch.triangles) {
-        const Vec2 a = patch.points[t[1]] - patch.points[t[0]], b = patch.points[t[2]] - patch.points[t[0]];
-        area += 0.5 * std::abs(a.x * b.y - a.y * b.x);
-    }
-    return area;
-}
-
 // Area of each material, patches and small triangles together.
 std::vector<double> material_areas(const Scene& scene, const model::PatchSet& set) {
     std::vector<double> areas(scene.materials.size());
-    for (const model::Patch& patch : set.patches) areas[patch.material.value] += patch_area(patch);
+    for (const model::Patch& patch : set.patches) areas[patch.material.value] += geometry::area(patch);
     for (std::size_t t = 0; t < set.small.triangles.size(); ++t) {
         const auto& [a, b, c] = set.small.triangles[t];
         const Vec3 cross =

@@ -126,6 +126,19 @@ TEST(Cluster, emitting_patches_stay_whole_up_to_two_elements) {
               8U);
 }
 
+TEST(Cluster, crowded_rooms_get_smaller_elements_than_empty_ones) {
+    const auto size = [](int boxes) {
+        model::Scene scene = empty_scene();
+        add_object(scene, "room", support::turned_inside_out(support::box_mesh(Vec3{0.0}, Vec3{4.0})));
+        for (int i = 0; i < boxes; ++i)
+            add_object(scene, "box",
+                       support::box_mesh(Vec3{0.5 + 0.3 * i, 0.5, 0.5}, Vec3{0.6 + 0.3 * i, 3.5, 3.5}));
+        return cluster_options_for(scene, patches_of(scene)).element_size;
+    };
+    EXPECT_NEAR(size(0), 0.4, 1e-12); // a tenth of the extent: the free path is 8/3
+    EXPECT_LT(size(3), 0.7 * size(0));
+}
+
 TEST(Cluster, sizes_follow_the_accuracy_and_the_scene) {
     model::Scene scene = wall_with_window();
     const model::PatchSet patches = patches_of(scene);
