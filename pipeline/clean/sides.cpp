@@ -114,16 +114,19 @@ bool is_skin(const std::vector<WorkMesh>& meshes, const std::vector<Candidate>& 
     });
 }
 
-// Whether light is inside a closed shell: then it is a room and faces inwards.
+// Whether a closed shell is a room, whose inside is looked at: a lamp is inside, or all else is, or something is and the
+// file has it face inwards. Unlit things inside alone (the eyes of an animal, the works of a machine) make no room.
 bool is_room(const std::vector<WorkMesh>& meshes, const std::vector<Candidate>& all, std::size_t shell) {
     if (all.size() == 1) return true;
     std::vector<std::size_t> inside;
+    bool lit = false;
     for (std::size_t other = 0; other < all.size(); ++other) {
         if (other == shell || !lies_inside(meshes, all[shell], all[other])) continue;
         inside.push_back(other);
         if (all[shell].volume < 0.0) return true;
+        lit = lit || all[other].emits;
     }
-    return !inside.empty() && !is_skin(meshes, all, inside);
+    return (lit || inside.size() + 1 == all.size()) && !is_skin(meshes, all, inside);
 }
 
 double size_of(const std::vector<WorkMesh>& meshes) {
