@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "support/computed.h"
+
+namespace kinelux::coefficients {
+namespace {
+
+TEST(FormFactors, rows_of_objects_sum_to_one) {
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(2, 3, 1), support::Facing::Inwards);
+    for (const auto& patch :
+         support::box(Vec3(0.7, 0.8, 0.2), Vec3(1.2, 1.5, 0.6), support::Facing::Outwards)) {
+        set.patches.push_back(patch);
+        set.patches.back().object = ObjectId(1);
+    }
+    const auto [shapes, coefficients] = support::compute(set, support::plain_scene(2), 3, 2);
+    std::vector<std::uint32_t> groups;
+    for (const auto& shape : shapes) groups.push_back(shape.object.value);
+    const auto factors = form_factors(coefficients, shapes, groups, 2);
+    ASSERT_EQ(factors.size(), 4u);
+    const double room_area = 22.0, block_area = 2 * (0.5 * 0.7 + 0.5 * 0.4 + 0.7 * 0.4);
+    EXPECT_NEAR(factors[0].value + factors[1].value, 1.0, 0.01);
+    EXPECT_NEAR(factors[2].value + factors[3].value, 1.0, 0.01);
+    EXPECT_NEAR(factors[3].value, 0.0, 1e-12) << "a convex body does not see itself";
+    EXPECT_NEAR(factors[1].value * room_area, block_area, 0.01 * block_area)
+        << "all its light reaches the room";
+}
+
+TEST(Coefficients, more_blocks_than_memory_allows_are_refused_before_work_starts) {
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(1), support::Facing::Inwards);
+    const auto scene = support::plain_scene(1);
+    const auto shapes = support::shapes_of(set, 4, 2);
+    const auto occluders = support::occluders_of(set, scene);
+    EXPECT_THROW(compute_coefficients(shapes, scene, {.degree = 2}, occluders, {}, 0.1), core::ResourceError);
+}
+
+TEST(Coefficients, are_the_same_bytes_on_one_thread_and_two) {
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(1), support::Facing::Inwards);
+    const auto scene = support::plain_scene(1);
+    core::set_thread_count(1);
+    const auto one = support::compute(set, scene, 3, 2).coefficients.static_blocks.values;
+    core::set_thread_count(2);
+    const auto two = support::compute(set, scene, 3, 2).coefficients.static_blocks.values;
+    core::set_thread_count(0);
+    EXPECT_EQ(one, two);
+}
+
+} // namespace
+} // namespace kinelux::coefficients
