@@ -132,7 +132,8 @@ TEST(Clean, unlit_things_inside_a_body_do_not_make_it_a_room) {
     add_object(scene, "works", box_mesh(Vec3{0.4}, Vec3{0.6}));
     add_object(scene, "elsewhere", box_mesh(Vec3{3.0}, Vec3{4.0}));
     const CleanResult result = cleaned(scene);
-    for (const model::Object& object : result.scene.objects) EXPECT_GT(model::signed_volume(object.mesh), 0.0);
+    for (const model::Object& object : result.scene.objects)
+        EXPECT_GT(model::signed_volume(object.mesh), 0.0);
 }
 
 TEST(Clean, lone_closed_part_is_a_room) {
