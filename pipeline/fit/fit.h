@@ -10,7 +10,7 @@ namespace kinelux::fit {
 
 struct FitOptions {
     double distance_tolerance =
-        1e-3; ///< of the scene's size: a face may be this far from its patch [1], 0..0.1
+        1e-4; ///< of the scene's size: a face may be this far from its patch [1], 0..0.1
     double normal_tolerance_deg = 5.0; ///< a face may be turned this far against its patch [deg], 0..45
     double min_patch_area =
         1e-4; ///< of the scene's area: smaller facets of curved surfaces stay triangles [1], 0..1

@@ -142,7 +142,7 @@ std::vector<RawNode> systematic_nodes(const ElementShape& shape, std::size_t cou
 
 // A rule on a patch's element that is exact to `degree`, with few nodes however many facets there are.
 std::vector<RawNode> patch_nodes(const ElementShape& shape, int degree) {
-    const std::vector<RawNode> exact = facet_nodes(shape.facets, degree);
+    std::vector<RawNode> exact = facet_nodes(shape.facets, degree);
     const auto kept = compress_quadrature(domain_points(exact), degree);
     if (!kept) return exact;
     std::vector<RawNode> nodes;

@@ -98,6 +98,7 @@ std::span<const TriangleNode> triangle_rule(int degree) {
     constexpr int table_size = 33;
     static const std::vector<Rule> table = [] {
         std::vector<Rule> rules;
+        rules.reserve(table_size);
         for (int d = 0; d < table_size; ++d) rules.push_back(d <= 8 ? dunavant(d) : collapsed_gauss(d));
         return rules;
     }();

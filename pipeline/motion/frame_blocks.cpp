@@ -52,6 +52,7 @@ std::vector<Ball> bounds_of_movers(std::span<const ElementShape> moving) {
         entry->second.second = glm::max(entry->second.second, element.box_high);
     }
     std::vector<Ball> balls;
+    balls.reserve(boxes.size());
     for (const auto& [object, box] : boxes)
         balls.push_back({0.5 * (box.first + box.second), 0.5 * glm::length(box.second - box.first)});
     return balls;

@@ -207,7 +207,7 @@ SensorReading Tracer::read(const SensorPoint& point, std::uint64_t seed,
             }
         }
         done = goal;
-        const SensorReading reading = reading_of(sums, done);
+        SensorReading reading = reading_of(sums, done);
         if (done == all || good_enough(reading, options.target_error)) return reading;
     }
 }

@@ -161,7 +161,7 @@ void subdivide(const Corners& corners, double longest, std::vector<Corners>& res
     Corners middle{};
     int count = 0;
     for (std::size_t e = 0; e < 3; ++e) {
-        const Vec3 a = corners[e], b = corners[(e + 1) % 3];
+        const Vec3 &a = corners[e], &b = corners[(e + 1) % 3];
         cut[e] = glm::distance(a, b) > longest;
         middle[e] = 0.5 * (a + b);
         count += cut[e] ? 1 : 0;
@@ -180,8 +180,8 @@ void subdivide(const Corners& corners, double longest, std::vector<Corners>& res
     // One or two edges: turn so that edge 0 is cut and, of two, edge 1 is the other.
     std::size_t e = 0;
     while (!cut[e] || (count == 2 && !cut[(e + 1) % 3])) ++e;
-    const Vec3 a = corners[e], b = corners[(e + 1) % 3], c = corners[(e + 2) % 3];
-    const Vec3 ab = middle[e], bc = middle[(e + 1) % 3];
+    const Vec3 &a = corners[e], &b = corners[(e + 1) % 3], &c = corners[(e + 2) % 3];
+    const Vec3 &ab = middle[e], &bc = middle[(e + 1) % 3];
     if (count == 1) {
         subdivide({a, ab, c}, longest, result);
         subdivide({ab, b, c}, longest, result);

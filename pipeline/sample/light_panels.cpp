@@ -101,7 +101,7 @@ double outline_sum(const Vec3& x, const Vec3& normal, const LightPanel& panel) {
 
 } // namespace
 
-Vec3 LightPanel::point(Vec2 square) const {
+Vec3 LightPanel::point(const Vec2& square) const {
     const double target = square.x * area();
     const auto found = std::upper_bound(cumulative_area.begin(), cumulative_area.end() - 1, target);
     const auto f = static_cast<std::size_t>(found - cumulative_area.begin());

@@ -24,7 +24,7 @@ struct LightPanel {
 
     double area() const { return cumulative_area.back(); }
     /// The point at the image of the unit square under a map that preserves area.
-    Vec3 point(Vec2 square) const;
+    Vec3 point(const Vec2& square) const;
 };
 
 /// Panels of the facets of some elements: those in one plane with an equal normal are one panel.

@@ -91,8 +91,9 @@ std::vector<std::vector<double>> grid_values(const model::GridMeter& grid, std::
     const Vec3 normal = glm::normalize(glm::cross(grid.edge_u, grid.edge_v));
     std::vector<std::vector<double>> values(std::size_t{grid.count_u} * grid.count_v);
     core::parallel_for(values.size(), [&](std::size_t p) {
-        const double u = (static_cast<double>(p % grid.count_u) + 0.5) / grid.count_u;
-        const double v = (static_cast<double>(p / grid.count_u) + 0.5) / grid.count_v;
+        const std::size_t column = p % grid.count_u, row = p / grid.count_u;
+        const double u = (static_cast<double>(column) + 0.5) / grid.count_u;
+        const double v = (static_cast<double>(row) + 0.5) / grid.count_v;
         const Receiver receiver{grid.origin + u * grid.edge_u + v * grid.edge_v, normal};
         std::vector<double> direct(channels);
         direct_light.irradiance(receiver, core::mix(core::mix(grid_stream, number), p), direct);

@@ -44,7 +44,6 @@ void apply(const TransportOperator& transport, std::size_t channels, std::span<c
 
 BlockOperator::BlockOperator(const model::UnknownLayout& layout, const model::BlockSet& static_blocks)
     : layout_(layout),
-      static_blocks_(static_blocks),
       static_rows_(rows_of(static_blocks, layout.elements())),
       replacing_rows_(layout.elements()) {}
 

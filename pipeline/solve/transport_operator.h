@@ -54,7 +54,6 @@ private:
     void mark(std::uint32_t element, std::uint32_t neighbour, bool replaced);
 
     const model::UnknownLayout& layout_;
-    const model::BlockSet& static_blocks_;
     Rows static_rows_, replacing_rows_; ///< per element, neighbours in increasing order
     std::vector<model::ElementPair> replaced_;
 };

@@ -193,10 +193,11 @@ void Occluders::Impl::place_moving() {
             axis[column] = 1.0;
             const Vec3 image = pose.direction(axis);
             for (int row = 0; row < 3; ++row)
-                transform[static_cast<std::size_t>(3 * column + row)] = static_cast<float>(image[row]);
+                transform[3 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)] =
+                    static_cast<float>(image[row]);
         }
         for (int row = 0; row < 3; ++row)
-            transform[static_cast<std::size_t>(9 + row)] = static_cast<float>(translation[row]);
+            transform[9 + static_cast<std::size_t>(row)] = static_cast<float>(translation[row]);
         RTCGeometry instance = rtcGetGeometry(moving.get(), static_cast<unsigned>(m));
         rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
         rtcCommitGeometry(instance);

@@ -18,6 +18,7 @@ TEST(FormFactors, rows_of_objects_sum_to_one) {
     }
     const auto [shapes, coefficients] = support::compute(set, support::plain_scene(2), 3, 2);
     std::vector<std::uint32_t> groups;
+    groups.reserve(shapes.size());
     for (const auto& shape : shapes) groups.push_back(shape.object.value);
     const auto factors = form_factors(coefficients, shapes, groups, 2);
     ASSERT_EQ(factors.size(), 4u);

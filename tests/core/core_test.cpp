@@ -25,7 +25,8 @@ TEST(Sobol, every_power_of_two_block_fills_every_elementary_interval) {
                 const Vec2 p = sobol_2d(k, seed);
                 ASSERT_GE(std::min(p.x, p.y), 0.0);
                 ASSERT_LT(std::max(p.x, p.y), 1.0);
-                cells.emplace(static_cast<int>(p.x * columns), static_cast<int>(p.y * (count / columns)));
+                const std::uint32_t rows = count / columns;
+                cells.emplace(static_cast<int>(p.x * columns), static_cast<int>(p.y * rows));
             }
             EXPECT_EQ(cells.size(), count) << columns << " columns, seed " << seed;
         }
