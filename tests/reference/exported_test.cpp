@@ -42,6 +42,7 @@ TEST(ValuesAt, a_linear_field_is_reproduced) {
     grid.add(13, 0.0, 0, true);
     core::Random random(3);
     std::vector<SensorPoint> sensors;
+    sensors.reserve(500);
     for (int i = 0; i < 500; ++i)
         sensors.push_back({ObjectId(0), 0, Vec3(random.next_2d(), 1e-3), Vec3(0, 0, 1)});
     const auto values = values_at(grid.field(), sensors, {});

@@ -149,6 +149,7 @@ TEST(DirectLight, penumbra_error_falls_with_the_number_of_rays) {
 TEST(LightPanels, coplanar_facets_of_many_elements_make_one_panel_with_four_edges) {
     const std::vector<geometry::ElementShape> shapes = support::shapes_of({{lamp()}, {}}, 5, 0);
     std::vector<const geometry::ElementShape*> elements;
+    elements.reserve(shapes.size());
     for (const geometry::ElementShape& shape : shapes) elements.push_back(&shape);
     const std::vector<LightPanel> panels = light_panels(elements);
     ASSERT_EQ(panels.size(), 1u);

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<double> areas_of(const std::vector<geometry::ElementShape>& shapes) {
     std::vector<double> areas;
+    areas.reserve(shapes.size());
     for (const auto& shape : shapes) areas.push_back(shape.area);
     return areas;
 }
