@@ -13,6 +13,7 @@
 #include "cli/text.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "io/case_folder.h"
 #include "io/case_hdf5.h"
 #include "io/read_scene.h"
 #include "io/scene_json.h"
@@ -38,7 +39,7 @@ struct Bounds {
 class Facts {
 public:
     void add(const std::string& name, const std::string& value) {
-        text_ += fmt::format("  {:<16}{}\n", name, value);
+        text_ += fmt::format("  {:<18}{}\n", name, value);
     }
     void add(const std::string& name, std::size_t value) { add(name, std::to_string(value)); }
     void add(const Bounds& bounds) {
@@ -179,7 +180,10 @@ std::string of_json(const fs::path& path) {
     const std::string what = fmt::format("{}: {}", path.string(), origin(header));
     if (header.format == "kinelux-plan") return what + "\n" + plan_table(io::plan_from_json(text));
     if (header.format == "kinelux-scene")
-        return of_scene(io::scene_from_json(text).scene, what + ", meshes beside it");
+        return fs::exists(path.parent_path() / "clean.vtm")
+                   ? of_scene(io::CaseFolder(path.parent_path()).read_scene(),
+                              what + ", with the meshes beside it")
+                   : of_scene(io::scene_from_json(text).scene, what + ", its meshes are not there");
     throw core::FileError("no file of a case");
 }
 

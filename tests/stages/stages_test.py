@@ -331,6 +331,10 @@ class FormFactorsAndInfo(StageTest):
                                ("case/coefficients.h5", "static blocks"), ("case/solution.h5", "residual"),
                                ("case/frames/frame_0000.vtu", "triangles"), ("case/fit.json", "record")):
             self.assertIn(expected, self.run_ok("kinelux", "info", name).stdout, name)
+        # A case's scene is shown with its meshes: the lamp emits, and no object is without area.
+        shown = self.run_ok("kinelux", "info", "case/scene.json").stdout
+        self.assertRegex(shown, r"lamp\s+\d+\s+[\d.]+\s+\S+\s+yes")
+        self.assertNotRegex(shown, r"triangles\s+0\b")
         self.assert_fails(3, r"nowhere\.h5", "kinelux", "info", "nowhere.h5")
 
 
