@@ -207,6 +207,17 @@ model::Solution solve_animation(const Animation& animation, motion::FrameUpdater
     for (const std::uint32_t number : frames) {
         const auto started = std::chrono::steady_clock::now();
         const double time_s = animation.scene.time.time_of_frame(number);
+        if (animation.plan.moving_objects.empty() && !solution.frames.empty()) {
+            // Nothing moves: the first frame is every frame.
+            FrameSolution same = solution.frames.front();
+            same.frame = number;
+            same.time_s = time_s;
+            same.sweeps = 0;
+            same.seconds = 0.0;
+            progress(same);
+            solution.frames.push_back(std::move(same));
+            continue;
+        }
         const motion::FrameBlocks changed = updater.at(time_s);
         transport.replace(changed.pairs, changed.blocks);
 

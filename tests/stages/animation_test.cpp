@@ -29,7 +29,7 @@ struct Room {
         plan.static_occlusion = plan.moving_occlusion = false;
     }
 
-    model::Solution solve() const {
+    model::Solution solve(const std::vector<std::uint32_t>& frames = {0}) const {
         const auto shapes = geometry::element_shapes(patches, tree, plan.degree, 0);
         visibility::Occluders occluders(visibility::bodies_of(patches, scene));
         const auto options = coefficients::transport_options_for(scene, plan);
@@ -38,7 +38,6 @@ struct Room {
         std::vector<double> areas;
         areas.reserve(shapes.size());
         for (const auto& shape : shapes) areas.push_back(shape.area);
-        const std::vector<std::uint32_t> frames{0};
         return solve::solve_animation({scene, plan, blocks, tree.elements, areas}, updater, frames, {},
                                       [](const model::FrameSolution&) {});
     }
@@ -71,6 +70,20 @@ TEST(Animation, error_estimate_is_small_and_positive_where_blocks_are_good) {
     EXPECT_LT(frame.error_estimate, 0.05);
     EXPECT_EQ(frame.element_error.size(), 24u);
     EXPECT_TRUE(frame.converged);
+}
+
+TEST(Animation, a_scene_at_rest_is_solved_once_for_all_frames) {
+    Room room;
+    room.scene.time = {0.0, 2.0, 3};
+    const auto frames = room.solve({0, 1, 2}).frames;
+    ASSERT_EQ(frames.size(), 3u);
+    EXPECT_GT(frames[0].sweeps, 0u);
+    for (const std::uint32_t f : {1u, 2u}) {
+        EXPECT_EQ(frames[f].sweeps, 0u);
+        EXPECT_EQ(frames[f].radiosity, frames[0].radiosity);
+        EXPECT_EQ(frames[f].frame, f);
+        EXPECT_EQ(frames[f].time_s, f);
+    }
 }
 
 TEST(BlocksAt, frame_blocks_take_the_place_of_static_ones_and_missing_ones_are_zero) {
