@@ -24,6 +24,13 @@ Derivatives plane(const model::Surface& s, const Vec2& uv) {
     return {s.origin + uv.x * s.axis_u + uv.y * s.axis_v, s.axis_u, s.axis_v};
 }
 
+Derivatives bilinear(const model::Surface& s, const Vec2& uv) {
+    const auto& [a, b, c, d] = s.corners;
+    const double u = uv.x, v = uv.y;
+    return {(1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * d + u * c),
+            (1.0 - v) * (b - a) + v * (c - d), (1.0 - u) * (d - a) + u * (c - b)};
+}
+
 // Cylinders and cones: a circle of radius r(v) = radius + slope v, moved along axis_w.
 Derivatives lathed_line(const model::Surface& s, const Vec2& uv, double slope) {
     const Vec3 e = std::cos(uv.x) * s.axis_u + std::sin(uv.x) * s.axis_v;
@@ -134,6 +141,7 @@ Derivatives derivatives(const model::Surface& s, const Vec2& uv) {
     case model::SurfaceType::Sphere: return lathed_circle(s, uv, 0.0, s.radius);
     case model::SurfaceType::Torus: return lathed_circle(s, uv, s.radius, s.minor_radius);
     case model::SurfaceType::BSpline: return spline(s.bspline, uv);
+    case model::SurfaceType::Bilinear: return bilinear(s, uv);
     }
     throw core::GeometryError("a surface of unknown type");
 }
@@ -149,6 +157,19 @@ SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv) {
                                   std::to_string(uv.y) + "; keep its domain away from poles and tips");
     }
     return {d.x, (surface.orientation / area_factor) * across, area_factor};
+}
+
+Vec3 position(const model::Surface& surface, const Vec2& uv) { return derivatives(surface, uv).x; }
+
+model::Surface moved(const model::Surface& surface, const Pose& pose) {
+    model::Surface result = surface;
+    result.origin = pose.point(surface.origin);
+    for (Vec3 model::Surface::*axis :
+         {&model::Surface::axis_u, &model::Surface::axis_v, &model::Surface::axis_w})
+        result.*axis = pose.direction(surface.*axis);
+    for (Vec3& pole : result.bspline.poles) pole = pose.point(pole);
+    for (Vec3& corner : result.corners) corner = pose.point(corner);
+    return result;
 }
 
 Vec2 plane_parameters(const model::Surface& surface, const Vec3& x) {

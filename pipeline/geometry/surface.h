@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
+#include "geometry/pose.h"
 #include "model/patch_set.h"
 
 namespace kinelux::geometry {
@@ -16,6 +17,13 @@ struct SurfaceJet {
 /// Evaluates any surface type at (u,v); see model::Surface for the parametrisations.
 /// @throws GeometryError  a B-spline whose sizes do not fit, or a point where the surface has no normal
 SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv);
+
+/// Position alone, which every surface has also where it has no normal (poles, tips, collapsed edges) [m].
+/// @throws GeometryError  a B-spline whose sizes do not fit
+Vec3 position(const model::Surface& surface, const Vec2& uv);
+
+/// The same surface elsewhere: position(moved(s, pose), uv) = pose.point(position(s, uv)).
+model::Surface moved(const model::Surface& surface, const Pose& pose);
 
 /// Parameters of the point of a plane nearest to x. @param surface  a Plane
 Vec2 plane_parameters(const model::Surface& surface, const Vec3& x);

@@ -98,8 +98,8 @@ private:
     // Probes run between nodes of the two elements that face each other, paired by a scrambled sequence so that both
     // elements are covered evenly. Only where they disagree are visibility rays spent at every node pair.
     void probe(const ElementShape& a, const ElementShape& b, const TransportOptions& options) {
-        const auto& xs = a.fine_nodes.nodes;
-        const auto& ys = b.fine_nodes.nodes;
+        const auto& xs = a.rules[1].nodes;
+        const auto& ys = b.rules[1].nodes;
         const std::uint64_t seed = core::mix(options.seed, core::mix(a.id.value, b.id.value));
         std::vector<visibility::Segment> segments;
         const int attempts = 2 * options.probe_rays;
@@ -416,10 +416,10 @@ TransportBlock transport(const ElementShape& a, const ElementShape& b, const vis
     block.values.assign(na * nb, 0.0);
     double rule_error = limits.near_error;
     if (eta >= limits.far_eta) {
-        add_node_product(a, a.nodes, b, b.nodes, sight, block.values);
+        add_node_product(a, a.rules[0], b, b.rules[0], sight, block.values);
         rule_error = limits.node_error;
     } else if (eta >= limits.near_eta) {
-        add_node_product(a, a.fine_nodes, b, b.fine_nodes, sight, block.values);
+        add_node_product(a, a.rules[1], b, b.rules[1], sight, block.values);
         rule_error = limits.node_error;
     } else if (a.radius <= b.radius) {
         NearPair(a, b, options, sight).add_to(block.values);
