@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+#include "geometry/basis.h"
+#include "geometry/element_shape.h"
+
+namespace kinelux::kernel {
+
+using Loop = std::vector<Vec3>;       ///< a closed boundary in one plane [m]
+using PlaneLoop = std::vector<Vec2>;  ///< the same in the plane's own coordinates [m]
+
+/// Polynomial moments of the transport kernel over flat polygons of one plane, as seen from a point:
+///   values_l = integral over the polygon of phi_l(y) cos+ cos' / (pi r^2) dA_y   [1/m].
+/// The radial part of the integral from the foot of the point is in closed form, what remains along each edge is a
+/// smooth integral by Gauss-Legendre after t = c sinh(s), which keeps the kernel's poles away however close the point
+/// comes to the polygon, an edge or a corner. Moments beyond the constant have no elementary closed form.
+/// @cite Lambert, Photometria (1760) for the constant; docs/quadrature.md
+class PolygonMoments {
+public:
+    /// @param facet  any piece of the plane: gives its position, its front and the parameters of its points
+    /// @param basis  the functions, polynomials of those parameters
+    PolygonMoments(const geometry::Facet& facet, const geometry::Basis& basis);
+
+    /// In the plane's coordinates. @param loops  in the plane
+    std::vector<PlaneLoop> to_plane(std::span<const Loop> loops) const;
+    Vec2 to_plane(const Vec3& point) const;
+
+    /// @param x       the point; the result is zero where it is not in front of the plane
+    /// @param normal  the point's, unit
+    /// @param loops   boundaries of the polygon, counter-clockwise seen from its front, holes clockwise; none of it may
+    ///                lie below the point's horizon (clip_to_front())
+    /// @param tolerance  relative to the moment of the constant [1], 1e-14..0.1
+    /// @param values  basis size, overwritten
+    void gather(const Vec3& x, const Vec3& normal, std::span<const PlaneLoop> loops, double tolerance,
+                std::span<double> values) const;
+
+private:
+    Vec3 origin_, axis_u_, axis_v_, front_; ///< orthonormal frame of the plane
+    Vec2 scaled_origin_, scaled_u_, scaled_v_; ///< the basis' scaled coordinates: origin + a u + b v
+    int degree_;
+    std::vector<double> monomials_; ///< Basis::monomial_coefficients
+};
+
+/// The part of loops in front of a plane; closed again along the plane. @param margin  points less than this far in
+/// front of the plane count as on it [m]
+std::vector<Loop> clip_to_front(std::span<const Loop> loops, const Vec3& origin, const Vec3& normal, double margin);
+
+} // namespace kinelux::kernel
