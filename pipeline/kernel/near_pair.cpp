@@ -94,12 +94,13 @@ public:
     // Of the straight line from a to b.
     void along(const Vec3& a, const Vec3& b, Singularity& nearest) const {
         const Vec3 d = b - a;
-        for (const auto& loop : polygon_.loops)
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const Vec3 &from = loop[i], &to = loop[(i + 1) % loop.size()];
-                consider_corner(a - from, d, nearest);
-                consider_edge(a - from, d, to - from, nearest);
+        for (std::size_t l = 0; l < polygon_.loops.size(); ++l) {
+            const std::span<const Vec3> loop = polygon_.loops[l];
+            for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+                consider_corner(a - loop[j], d, nearest);
+                consider_edge(a - loop[j], d, loop[i] - loop[j], nearest);
             }
+        }
         consider_plane(a, d, nearest);
     }
 
@@ -160,12 +161,12 @@ public:
         std::vector<Cell> first;
         for (const OuterPiece& piece : pieces) append_cells(piece, first);
         for (const Cell& cell : first) total_area_ += area_of(cell);
-        if (options_.polygon != nullptr) first = planned(std::move(first));
-        else for (Cell& cell : first) cell.s.nodes = cell.t.nodes = usual_nodes();
-        for (Cell& cell : first) evaluate(cell);
-        cells_ = std::move(first);
-        std::make_heap(cells_.begin(), cells_.end(), smaller_error);
-        if (options_.polygon == nullptr) refine();
+        cells_ = options_.polygon != nullptr ? planned(std::move(first)) : std::move(first);
+        for (Cell& cell : cells_) {
+            if (options_.refine) ask_for_measuring(cell);
+            evaluate(cell);
+        }
+        if (options_.refine) refine();
 
         OuterResult result;
         result.values.assign(size_, 0.0);
@@ -173,6 +174,7 @@ public:
             for (std::size_t k = 0; k < size_; ++k) result.values[k] += cell.values[k];
             result.error += cell.error();
         }
+        if (!options_.refine) result.error = options_.tolerance * std::sqrt(norm2(result.values));
         result.points = points_;
         return result;
     }
@@ -201,11 +203,12 @@ private:
                at.y * (facet->corners[2] - facet->corners[0]);
     }
 
-    // Without a polygon to plan by: few nodes for coarse and many for fine tolerances are the cheapest in the end.
-    int usual_nodes() const {
+    // Nodes with which errors can be measured; few for coarse and many for fine tolerances are the cheapest in the end.
+    void ask_for_measuring(Cell& cell) const {
         const double tolerance = options_.tolerance;
         const int by_tolerance = tolerance >= 3e-3 ? 3 : tolerance >= 1e-4 ? 4 : tolerance >= 1e-6 ? 6 : 8;
-        return std::min(by_tolerance + (element_.basis.degree() + 1) / 2, most_nodes);
+        const int nodes = std::min(by_tolerance + (element_.basis.degree() + 1) / 2, most_nodes);
+        cell.s.nodes = cell.t.nodes = nodes;
     }
 
     // Divides cells until every direction of each is resolved by few nodes, or does not matter.
@@ -219,15 +222,12 @@ private:
                 result.push_back(std::move(cell));
                 continue;
             }
-            for (const auto& corners : halves(cell)) waiting.push_back({cell.facet, corners, {}, {}, {}});
+            const bool across_s = cell.s.foretold >= cell.t.foretold;
+            for (const auto& corners :
+                 divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division))
+                waiting.push_back({cell.facet, corners, {}, {}, {}});
         }
         return result;
-    }
-
-    std::array<std::array<Vec2, 4>, 2> halves(const Cell& cell) const {
-        const bool planned = options_.polygon != nullptr;
-        const bool across_s = planned ? cell.s.foretold >= cell.t.foretold : cell.s.error() >= cell.t.error();
-        return divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division);
     }
 
     // Chooses nodes for both directions. @return  whether they resolve the integrand
@@ -250,8 +250,8 @@ private:
     }
 
     bool choose(const Singularity& nearest, double share, double length, Direction& direction) const {
-        // The cells with large shares are few.
-        const double wanted = getenv("W")?atof(getenv("W")) * options_.tolerance / pow(share, atof(getenv("P"))) : 0.2 * options_.tolerance / share;
+        // What errors add up to stays behind the sum of their bounds, the more so the coarser the tolerance.
+        const double wanted = 10.0 * options_.tolerance * std::pow(100.0 * options_.tolerance, 0.15) / share;
         const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
         const double log_rate = std::log(nearest.rate);
         constexpr int most = 8, fewest = 2;
@@ -271,6 +271,7 @@ private:
     }
 
     void refine() {
+        std::make_heap(cells_.begin(), cells_.end(), smaller_error);
         // The sums are kept up to date by differences; they only steer.
         std::vector<double> sum(size_, 0.0);
         double error = 0.0;
@@ -294,14 +295,12 @@ private:
     }
 
     std::array<Cell, 2> split(const Cell& cell) {
-        const auto corners = halves(cell);
+        const bool across_s = cell.s.error() >= cell.t.error();
+        const auto corners = divided(cell.corners, across_s, 0.5);
         std::array<Cell, 2> result{Cell{cell.facet, corners[0], cell.s, cell.t, {}},
                                    Cell{cell.facet, corners[1], cell.s, cell.t, {}}};
-        for (Cell& half : result) {
-            if (options_.polygon != nullptr) foretell(half);
-            evaluate(half);
-        }
-        if (options_.polygon == nullptr) calibrate(cell, result);
+        for (Cell& half : result) evaluate(half);
+        calibrate(cell, result);
         return result;
     }
 
@@ -341,12 +340,7 @@ private:
             }
         for (std::size_t i = 0; i < ns; ++i)
             for (std::size_t e = 0; e < size_; ++e) cell.values[e] += s_rule.weights[i] * along_s_[i * size_ + e];
-        if (options_.polygon != nullptr) {
-            const double scale = std::sqrt(norm2(cell.values));
-            cell.s.raw_error = scale * cell.s.foretold;
-            cell.t.raw_error = scale * cell.t.foretold;
-            cell.s.calibration = cell.t.calibration = 1.0;
-        } else {
+        if (options_.refine) {
             cell.s.raw_error = error_along(along_s_, cell.s.nodes);
             cell.t.raw_error = error_along(along_t_, cell.t.nodes);
         }

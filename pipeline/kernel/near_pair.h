@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/element_shape.h"
+#include "visibility/loops.h"
 
 namespace kinelux::kernel {
 
@@ -27,16 +28,16 @@ struct OuterPiece {
 /// Where the inner integral over a flat polygon, as a function of the outer point, is not analytic: at the polygon's
 /// edges and corners, and weakly in its plane.
 struct InnerPolygon {
-    std::vector<std::vector<Vec3>> loops; ///< [m]
-    Vec3 origin, normal;                  ///< of its plane
+    const visibility::Loops3& loops; ///< [m]
+    Vec3 origin, normal;             ///< of its plane
 };
 
 struct OuterOptions {
-    double tolerance = 1e-3; ///< of the sum's Frobenius norm [1]
+    double tolerance = 1e-3; ///< of the sum's Frobenius norm [1], 1e-10..0.1
     double floor = 0.0;      ///< norm below which only tolerance times it is asked for [1]
-    std::size_t most_points = 20000;      ///< evaluations of the inner integral
-    const InnerPolygon* polygon = nullptr; ///< given where the inner integral is over this polygon, all of it visible:
-                                           ///< cells and rules are then planned from its edges, and errors foretold
+    std::size_t most_points = 20000;       ///< evaluations of the inner integral
+    const InnerPolygon* polygon = nullptr; ///< the first cells and their rules are planned from its edges
+    bool refine = true; ///< false where the polygon says all there is to know: all of it is visible from everywhere
 };
 
 struct OuterResult {
@@ -46,8 +47,10 @@ struct OuterResult {
 };
 
 /// The outer integral: sum over pieces of integral phi_k(x) gather_l(x) dA, by tensor Gauss products on quadrilateral
-/// cells. The cell with the largest error estimate is divided, across the direction in which the integrand is rougher,
-/// until the sum of the estimates is below the tolerance.
+/// cells. Planned cells are cut until the distance of the nearest singularity of the integrand, real or complex, lets few
+/// nodes resolve it in either direction; their error is the tolerance they were planned for. With `refine` errors are
+/// measured: the cell with the largest is divided, across the direction in which the integrand is rougher, until their
+/// sum is below the tolerance.
 /// @param element  the pieces lie on
 /// @param columns  basis size of the inner element
 OuterResult integrate_outer(const geometry::ElementShape& element, std::span<const OuterPiece> pieces,

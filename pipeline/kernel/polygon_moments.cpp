@@ -190,57 +190,42 @@ Vec2 PolygonMoments::to_plane(const Vec3& point) const {
     return {glm::dot(point - origin_, axis_u_), glm::dot(point - origin_, axis_v_)};
 }
 
-std::vector<PlaneLoop> PolygonMoments::to_plane(std::span<const Loop> loops) const {
-    std::vector<PlaneLoop> result(loops.size());
-    for (std::size_t l = 0; l < loops.size(); ++l)
-        for (const Vec3& point : loops[l]) result[l].push_back(to_plane(point));
-    return result;
+void PolygonMoments::to_plane(const visibility::Loops3& loops, visibility::Loops2& flat) const {
+    flat.points.resize(loops.points.size());
+    std::transform(loops.points.begin(), loops.points.end(), flat.points.begin(),
+                   [&](const Vec3& point) { return to_plane(point); });
+    flat.ends = loops.ends;
 }
 
-void PolygonMoments::gather(const Vec3& x, const Vec3& normal, std::span<const PlaneLoop> loops, double tolerance,
+void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
                             std::span<double> values) const {
     std::fill(values.begin(), values.end(), 0.0);
     const double h = glm::dot(front_, x - origin_);
     if (!(h > 0.0)) return;
     const Vec2 foot = to_plane(x);
+    const Vec2 scaled_foot = scaled_origin_ + foot.x * scaled_u_ + foot.y * scaled_v_;
+    // Moments about a foot far outside the domain cancel when they are taken about its centre.
+    const double cancellation = std::pow(1.0 + std::max(std::abs(scaled_foot.x), std::abs(scaled_foot.y)), degree_);
+    constexpr double finest = 1e-15;
     const EdgeIntegrator integrator{h,
                                     glm::dot(normal, front_),
                                     {glm::dot(normal, axis_u_), glm::dot(normal, axis_v_)},
                                     scaled_u_,
                                     scaled_v_,
                                     static_cast<std::size_t>(degree_),
-                                    tolerance};
+                                    std::max(tolerance / cancellation, finest)};
     Moments moments{};
-    for (const PlaneLoop& loop : loops)
-        for (std::size_t i = 0; i < loop.size(); ++i)
-            integrator.add(loop[i] - foot, loop[(i + 1) % loop.size()] - foot, moments);
-    moments = shifted(moments, scaled_origin_ + foot.x * scaled_u_ + foot.y * scaled_v_,
-                      static_cast<std::size_t>(degree_));
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        const std::span<const Vec2> loop = loops[l];
+        for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++)
+            integrator.add(loop[j] - foot, loop[i] - foot, moments);
+    }
+    moments = shifted(moments, scaled_foot, static_cast<std::size_t>(degree_));
     for (std::size_t l = 0; l < values.size(); ++l) {
         double sum = 0.0;
         for (std::size_t m = 0; m < values.size(); ++m) sum += monomials_[l * values.size() + m] * moments[m];
         values[l] = sum / std::numbers::pi;
     }
-}
-
-std::vector<Loop> clip_to_front(std::span<const Loop> loops, const Vec3& origin, const Vec3& normal, double margin) {
-    std::vector<Loop> result;
-    for (const Loop& loop : loops) {
-        Loop clipped;
-        Vec3 previous = loop.back();
-        double previous_height = glm::dot(normal, previous - origin) - margin;
-        for (const Vec3& current : loop) {
-            const double height = glm::dot(normal, current - origin) - margin;
-            if ((height > 0.0) != (previous_height > 0.0))
-                clipped.push_back(previous +
-                                  (current - previous) * (previous_height / (previous_height - height)));
-            if (height > 0.0) clipped.push_back(current);
-            previous = current;
-            previous_height = height;
-        }
-        if (clipped.size() >= 3) result.push_back(std::move(clipped));
-    }
-    return result;
 }
 
 } // namespace kinelux::kernel

@@ -7,11 +7,9 @@
 #include "core/vec.h"
 #include "geometry/basis.h"
 #include "geometry/element_shape.h"
+#include "visibility/loops.h"
 
 namespace kinelux::kernel {
-
-using Loop = std::vector<Vec3>;       ///< a closed boundary in one plane [m]
-using PlaneLoop = std::vector<Vec2>;  ///< the same in the plane's own coordinates [m]
 
 /// Polynomial moments of the transport kernel over flat polygons of one plane, as seen from a point:
 ///   values_l = integral over the polygon of phi_l(y) cos+ cos' / (pi r^2) dA_y   [1/m].
@@ -25,17 +23,17 @@ public:
     /// @param basis  the functions, polynomials of those parameters
     PolygonMoments(const geometry::Facet& facet, const geometry::Basis& basis);
 
-    /// In the plane's coordinates. @param loops  in the plane
-    std::vector<PlaneLoop> to_plane(std::span<const Loop> loops) const;
+    /// Loops in the plane by its own coordinates [m]. @param flat  overwritten; keeps its memory
+    void to_plane(const visibility::Loops3& loops, visibility::Loops2& flat) const;
     Vec2 to_plane(const Vec3& point) const;
 
     /// @param x       the point; the result is zero where it is not in front of the plane
     /// @param normal  the point's, unit
-    /// @param loops   boundaries of the polygon, counter-clockwise seen from its front, holes clockwise; none of it may
-    ///                lie below the point's horizon (clip_to_front())
+    /// @param loops   boundaries of the polygon in the plane's coordinates; none of it may lie below the point's
+    ///                horizon
     /// @param tolerance  relative to the moment of the constant [1], 1e-14..0.1
     /// @param values  basis size, overwritten
-    void gather(const Vec3& x, const Vec3& normal, std::span<const PlaneLoop> loops, double tolerance,
+    void gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
                 std::span<double> values) const;
 
 private:
@@ -44,9 +42,5 @@ private:
     int degree_;
     std::vector<double> monomials_; ///< Basis::monomial_coefficients
 };
-
-/// The part of loops in front of a plane; closed again along the plane. @param margin  points less than this far in
-/// front of the plane count as on it [m]
-std::vector<Loop> clip_to_front(std::span<const Loop> loops, const Vec3& origin, const Vec3& normal, double margin);
 
 } // namespace kinelux::kernel
