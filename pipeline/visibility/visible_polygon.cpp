@@ -7,9 +7,10 @@
 #include <limits>
 
 // What is visible is kept as a sum of regions with integer weights: at first the target, once. Subtracting a blocker B
-// from a sum of regions R adds -weight times (R and B) for each R. Every such section has a convex partner, by whose half
-// planes the other one is cut, so that nothing but cuts by lines is needed: no case is degenerate, and errors are of the
-// size of rounding. The sum stays small because regions that lie wholly in B cancel, and so do sections that are all of B.
+// from a sum of regions R adds -weight times (R and B) for each R. Of two sets one is always cut by the lines that bound
+// the other, so that no case is degenerate and errors are of the size of rounding. The lines are those of the blockers
+// themselves, never of sections, whose sides may be so short that rounding turns them. The sum stays small because regions
+// that lie wholly in B cancel, and so do sections that are all of B.
 
 namespace kinelux::visibility {
 
@@ -23,29 +24,10 @@ constexpr double hidden_share = 1e-12; ///< of the target's area: less than this
 constexpr double covered_share = 1e-9; ///< of a shaft's section: a slit so narrow lets nothing through
 constexpr double convex_slack = 1e-12; ///< sine of a turn that counts as none
 
+constexpr double on_line = 1e-13;   ///< distance, of the target's reach, that counts as none
+constexpr double short_side = 1e-3; ///< of the reach: the direction of a shorter side is put to the test
+
 double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
-
-// Half plane to the left of the line from p to q.
-auto left_of(const Vec2& p, const Vec2& q) {
-    return [p, edge = q - p](const Vec2& y) { return cross(edge, y - p); };
-}
-
-bool contains(std::span<const Vec2> convex, std::span<const Vec2> points) {
-    for (std::size_t i = 0; i < convex.size(); ++i) {
-        const auto left = left_of(convex[i], convex[i + 1 < convex.size() ? i + 1 : 0]);
-        for (const Vec2& p : points)
-            if (left(p) < 0.0) return false;
-    }
-    return true;
-}
-
-// Cuts the cutter's loop by all sides of a convex window.
-void keep_within(LoopCutter<Vec2>& cutter, std::span<const Vec2> window) {
-    for (std::size_t i = 0; i < window.size() && !cutter.loop().empty(); ++i) {
-        const Vec2& next = window[i + 1 < window.size() ? i + 1 : 0];
-        if (next != window[i]) cutter.keep(left_of(window[i], next));
-    }
-}
 
 // The lowest and the highest of the points' heights over a plane.
 struct HeightRange {
@@ -139,37 +121,48 @@ void VisiblePolygon::look_at(const Vec3& x, const Loops3& target, const Vec3& no
     height_ = glm::dot(normal, x - outer[0]);
     loops_.clear();
     regions_.clear();
+    lines_.clear();
+    members_.clear();
+    target_area_ = 0.0;
     for (std::size_t loop = 0; loop < target.size(); ++loop) {
         for (const Vec3& p : target[loop]) loops_.points.emplace_back(seen(p));
         loops_.ends.push_back(static_cast<std::uint32_t>(loops_.points.size()));
+        target_area_ += twice_area(loops_[loop]);
     }
+    add_region(0, 1, {});
+    Vec2 low = loops_.points[0], high = low;
+    for (const Vec2& p : loops_.points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const Vec2 farthest = glm::max(glm::abs(low), glm::abs(high));
+    reach_ = std::sqrt(glm::dot(farthest, farthest) + height_ * height_);
     target_is_window_ = loops_.size() == 1 && is_convex(loops_[0], convex_slack);
-    add_region(0, 1, target_is_window_);
-    target_area_ = 0.0;
-    for (std::size_t loop = 0; loop < loops_.size(); ++loop) target_area_ += twice_area(loops_[loop]);
-    make_cone();
+    make_cone(low, high);
 }
 
 // The half spaces through x and the sides of the window, which is the target or a rectangle around it. What lies in all
 // of them is seen within the window: projections stay bounded however near to x a blocker comes.
-void VisiblePolygon::make_cone() {
-    const Region& target = regions_[0];
-    if (target_is_window_)
-        window_.assign(loops_.points.begin(), loops_.points.end());
-    else
-        window_ = {target.low, {target.high.x, target.low.y}, target.high, {target.low.x, target.high.y}};
+void VisiblePolygon::make_cone(const Vec2& low, const Vec2& high) {
+    const std::array<Vec2, 4> box{low, {high.x, low.y}, high, {low.x, high.y}};
+    const std::span<const Vec2> window = target_is_window_ ? loops_[0] : std::span<const Vec2>(box);
     cone_.clear();
-    for (std::size_t i = 0; i < window_.size(); ++i) {
-        const Vec2& p = window_[i];
-        const Vec2 edge = window_[i + 1 < window_.size() ? i + 1 : 0] - p;
-        if (edge != Vec2(0.0)) cone_.emplace_back(-edge.y * height_, edge.x * height_, -cross(edge, p));
+    for (std::size_t i = 0; i < window.size(); ++i) {
+        const Vec2& p = window[i];
+        const Vec2 edge = window[i + 1 < window.size() ? i + 1 : 0] - p;
+        const double length = glm::length(edge);
+        // Where a short side, turned by rounding, would cut off another corner, its neighbours bound the window.
+        const auto cut_off = [&](const Vec2& q) { return cross(edge, q - p) < -on_line * reach_ * length; };
+        if (length == 0.0 ||
+            (length < short_side * reach_ && std::any_of(window.begin(), window.end(), cut_off)))
+            continue;
+        cone_.emplace_back(-edge.y * height_, edge.x * height_, -cross(edge, p));
     }
-    const Vec2 farthest = glm::max(glm::abs(target.low), glm::abs(target.high));
-    reach_ = std::sqrt(glm::dot(farthest, farthest) + height_ * height_);
 }
 
-// What is seen of loops before the target and within the cone, in the target's plane. False when nothing.
-bool VisiblePolygon::project(const Loops3& loops, double turn, Loops2& projected) {
+// Leaves in other_ what is seen of loops before the target and within the cone. False when nothing.
+bool VisiblePolygon::project(const Loops3& loops, double turn) {
+    other_.clear();
     for (std::size_t loop = 0; loop < loops.size(); ++loop) {
         seen_.clear();
         for (const Vec3& p : loops[loop]) seen_.push_back(seen(p));
@@ -181,77 +174,120 @@ bool VisiblePolygon::project(const Loops3& loops, double turn, Loops2& projected
         cutter_.keep([this](const Vec3& p) { return height_ - p.z; });
         const auto lies_in_plane = [this](const Vec3& p) { return height_ - p.z <= touching * reach_; };
         if (std::all_of(cutter_.loop().begin(), cutter_.loop().end(), lies_in_plane)) continue;
-        const std::size_t first = projected.points.size();
-        for (const Vec3& p : cutter_.loop()) projected.points.push_back(height_ / p.z * Vec2(p));
+        const std::size_t first = other_.points.size();
+        for (const Vec3& p : cutter_.loop()) other_.points.push_back(height_ / p.z * Vec2(p));
         if (turn < 0.0)
-            std::reverse(projected.points.begin() + static_cast<std::ptrdiff_t>(first),
-                         projected.points.end());
-        projected.ends.push_back(static_cast<std::uint32_t>(projected.points.size()));
+            std::reverse(other_.points.begin() + static_cast<std::ptrdiff_t>(first), other_.points.end());
+        other_.ends.push_back(static_cast<std::uint32_t>(other_.points.size()));
     }
-    return !projected.empty();
+    return !other_.empty();
 }
 
-void VisiblePolygon::add_region(std::uint32_t first_loop, int weight, bool convex) {
-    Region region{.first_loop = first_loop, .weight = weight, .convex = convex};
-    region.loop_count = static_cast<std::uint32_t>(loops_.size()) - first_loop;
-    const std::size_t first = first_loop == 0 ? 0 : loops_.ends[first_loop - 1];
-    region.low = region.high = loops_.points[first];
-    for (std::size_t i = first; i < loops_.points.size(); ++i) {
-        region.low = glm::min(region.low, loops_.points[i]);
-        region.high = glm::max(region.high, loops_.points[i]);
+// The lines that bound what a convex polygon hides: its sides, and where its plane meets the target's, behind which it is
+// no longer before the target.
+void VisiblePolygon::add_lines(std::span<const Vec3> seen_loop, double turn, const Vec3& plane_normal) {
+    const auto add = [&](const Vec3& inwards) {
+        const double length = std::hypot(inwards.x, inwards.y);
+        // Parallel to the target's plane a line is nowhere: all of the plane is on one side, far away.
+        const double scale = 1.0 / std::max(length, std::numeric_limits<double>::min());
+        lines_.push_back({scale * Vec2(inwards), scale * inwards.z * height_});
+    };
+    const double side = turn > 0.0 ? 1.0 : -1.0;
+    for (std::size_t i = 0; i < seen_loop.size(); ++i)
+        add(side * glm::cross(seen_loop[i], seen_loop[i + 1 < seen_loop.size() ? i + 1 : 0]));
+    add(-side * Vec3(glm::dot(axis_u_, plane_normal) * height_, glm::dot(axis_v_, plane_normal) * height_,
+                     turn - glm::dot(normal_, plane_normal) * height_));
+}
+
+void VisiblePolygon::add_region(std::uint32_t first_loop, int weight, Range windows) {
+    regions_.push_back({.loops = {first_loop, static_cast<std::uint32_t>(loops_.size()) - first_loop},
+                        .weight = weight,
+                        .windows = windows});
+}
+
+// The part of a region that the blocker hides; convex where both are.
+void VisiblePolygon::add_section(std::uint32_t first_loop, const Region& region) {
+    Range windows{static_cast<std::uint32_t>(members_.size()), 0};
+    if (region.windows.count > 0 && other_lines_.count > 0) {
+        for (std::uint32_t m = 0; m < region.windows.count; ++m)
+            members_.push_back(members_[region.windows.first + m]);
+        members_.push_back(other_lines_);
+        windows.count = region.windows.count + 1;
     }
-    regions_.push_back(region);
+    add_region(first_loop, -region.weight, windows);
 }
 
 void VisiblePolygon::subtract(const PlanarBlocker& blocker) {
     // From the plane's back its loops are seen to turn the other way.
     const double turn = glm::dot(blocker.plane.normal, x_ - blocker.loops.points[0]);
-    if (std::abs(turn) <= edge_on * reach_) return;
-    other_.clear();
-    if (!project(blocker.loops, turn, other_)) return;
-    other_convex_ = blocker.convex || (other_.size() == 1 && is_convex(other_[0], convex_slack));
+    if (std::abs(turn) <= edge_on * reach_ || !project(blocker.loops, turn)) return;
+    other_lines_ = {static_cast<std::uint32_t>(lines_.size()), 0};
+    if (blocker.convex) add_lines(seen_, turn, blocker.plane.normal);
+    other_lines_.count = static_cast<std::uint32_t>(lines_.size()) - other_lines_.first;
     const std::size_t before = regions_.size();
     int whole = 0;
     for (std::size_t r = 0; r < before; ++r) {
-        const int weight = regions_[r].weight;
-        if (weight == 0) continue;
+        const Region region = regions_[r];
+        if (region.weight == 0) continue;
         const auto first_loop = static_cast<std::uint32_t>(loops_.size());
-        switch (meet(r, blocker, turn)) {
+        switch (r == 0 && target_is_window_ ? Meeting::WholeOther : meet(region, blocker, turn)) {
         case Meeting::None: break;
-        case Meeting::WholeOther: whole -= weight; break;
+        case Meeting::WholeOther: whole -= region.weight; break;
         case Meeting::WholeRegion: regions_[r].weight = 0; break;
-        case Meeting::Part: add_region(first_loop, -weight, regions_[r].convex && other_convex_); break;
+        case Meeting::Part: add_section(first_loop, region); break;
         }
     }
     if (whole == 0) return;
     const auto first_loop = static_cast<std::uint32_t>(loops_.size());
     for (std::size_t loop = 0; loop < other_.size(); ++loop) loops_.add(other_[loop]);
-    add_region(first_loop, whole, other_convex_);
+    const Range windows{static_cast<std::uint32_t>(members_.size()), other_lines_.count > 0 ? 1u : 0u};
+    if (windows.count > 0) members_.push_back(other_lines_);
+    add_region(first_loop, whole, windows);
 }
 
-// The section of a region with the projected blocker; a part of both is left at the end of loops_.
-VisiblePolygon::Meeting VisiblePolygon::meet(std::size_t region, const PlanarBlocker& blocker, double turn) {
-    if (region == 0 && target_is_window_) return Meeting::WholeOther;
-    const Region& r = regions_[region];
-    if (r.convex) return cut_other(region);
-    if (other_convex_) return cut_region(region, other_[0]);
-    piece_.clear();
-    project(blocker.pieces, turn, piece_);
+// The section of a region with the projected blocker; where it is a part of both it is left at the end of loops_.
+VisiblePolygon::Meeting VisiblePolygon::meet(const Region& region, const PlanarBlocker& blocker,
+                                             double turn) {
+    if (other_lines_.count > 0 && holds(other_lines_, region)) return Meeting::WholeRegion;
+    if (region.windows.count > 0) return cut_other(region);
+    if (other_lines_.count > 0) return cut_region(region, other_lines_);
     Meeting result = Meeting::None;
-    for (std::size_t piece = 0; piece < piece_.size(); ++piece)
-        if (cut_region(region, piece_[piece]) != Meeting::None) result = Meeting::Part;
+    for (std::size_t piece = 0; piece < blocker.pieces.size(); ++piece) {
+        seen_.clear();
+        for (const Vec3& p : blocker.pieces[piece]) seen_.push_back(seen(p));
+        const auto first = static_cast<std::uint32_t>(lines_.size());
+        add_lines(seen_, turn, blocker.plane.normal);
+        const Range lines{first, static_cast<std::uint32_t>(lines_.size()) - first};
+        if (cut_region(region, lines) != Meeting::None) result = Meeting::Part;
+    }
     return result;
 }
 
-// Cuts the blocker by a convex region.
-VisiblePolygon::Meeting VisiblePolygon::cut_other(std::size_t region) {
-    const std::uint32_t first = regions_[region].first_loop;
-    if (other_convex_ && contains(other_[0], loops_[first])) return Meeting::WholeRegion;
+bool VisiblePolygon::holds(Range lines, const Region& region) const {
+    for (std::uint32_t loop = 0; loop < region.loops.count; ++loop)
+        for (const Vec2& p : loops_[region.loops.first + loop])
+            for (std::uint32_t line = 0; line < lines.count; ++line)
+                if (lines_[lines.first + line].distance(p) < -on_line * reach_) return false;
+    return true;
+}
+
+// Cuts the loop at hand. Points as good as on a line are on it, so that equal sides of two blockers cancel.
+void VisiblePolygon::keep_within(Range lines) {
+    for (std::uint32_t line = 0; line < lines.count && !flat_cutter_.loop().empty(); ++line)
+        flat_cutter_.keep([this, &l = lines_[lines.first + line]](const Vec2& p) {
+            const double distance = l.distance(p);
+            return std::abs(distance) <= on_line * reach_ ? 0.0 : distance;
+        });
+}
+
+// Cuts the blocker by the lines of a region.
+VisiblePolygon::Meeting VisiblePolygon::cut_other(const Region& region) {
     const std::size_t points = loops_.points.size(), loops = loops_.size();
     bool whole = true;
     for (std::size_t loop = 0; loop < other_.size(); ++loop) {
         flat_cutter_.begin(other_[loop]);
-        keep_within(flat_cutter_, loops_[first]);
+        for (std::uint32_t m = 0; m < region.windows.count; ++m)
+            keep_within(members_[region.windows.first + m]);
         whole = whole && flat_cutter_.whole();
         if (flat_cutter_.loop().size() >= 3) loops_.add(flat_cutter_.loop());
     }
@@ -263,12 +299,12 @@ VisiblePolygon::Meeting VisiblePolygon::cut_other(std::size_t region) {
     return loops_.size() > loops ? Meeting::Part : Meeting::None;
 }
 
-// Cuts a region by a convex window in the blocker.
-VisiblePolygon::Meeting VisiblePolygon::cut_region(std::size_t region, std::span<const Vec2> window) {
+// Cuts a region by lines of the blocker.
+VisiblePolygon::Meeting VisiblePolygon::cut_region(const Region& region, Range lines) {
     const std::size_t loops = loops_.size();
-    for (std::uint32_t loop = 0; loop < regions_[region].loop_count; ++loop) {
-        flat_cutter_.begin(loops_[regions_[region].first_loop + loop]);
-        keep_within(flat_cutter_, window);
+    for (std::uint32_t loop = 0; loop < region.loops.count; ++loop) {
+        flat_cutter_.begin(loops_[region.loops.first + loop]);
+        keep_within(lines);
         if (flat_cutter_.loop().size() >= 3) loops_.add(flat_cutter_.loop());
     }
     return loops_.size() > loops ? Meeting::Part : Meeting::None;
@@ -277,16 +313,16 @@ VisiblePolygon::Meeting VisiblePolygon::cut_region(std::size_t region, std::span
 const Loops3& VisiblePolygon::visible_loops() {
     double area = 0.0;
     for (const Region& region : regions_)
-        for (std::uint32_t loop = 0; loop < region.loop_count; ++loop)
-            area += region.weight * twice_area(loops_[region.first_loop + loop]);
+        for (std::uint32_t loop = 0; loop < region.loops.count; ++loop)
+            area += region.weight * twice_area(loops_[region.loops.first + loop]);
     if (area <= hidden_share * target_area_) return visible_;
     const auto in_space = [this](const Vec2& p) {
         return x_ + p.x * axis_u_ + p.y * axis_v_ - height_ * normal_;
     };
     for (const Region& region : regions_)
         for (int copy = 0; copy < std::abs(region.weight); ++copy)
-            for (std::uint32_t l = 0; l < region.loop_count; ++l) {
-                const std::span<const Vec2> loop = loops_[region.first_loop + l];
+            for (std::uint32_t l = 0; l < region.loops.count; ++l) {
+                const std::span<const Vec2> loop = loops_[region.loops.first + l];
                 for (std::size_t i = 0; i < loop.size(); ++i)
                     visible_.points.push_back(in_space(loop[region.weight > 0 ? i : loop.size() - 1 - i]));
                 visible_.ends.push_back(static_cast<std::uint32_t>(visible_.points.size()));

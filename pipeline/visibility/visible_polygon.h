@@ -40,37 +40,50 @@ public:
                        std::span<const PlanarBlocker> blockers);
 
 private:
+    // A line in the target's plane; normal unit, to its inner side.
+    struct Line {
+        Vec2 normal{0.0};
+        double offset = 0.0;
+        double distance(const Vec2& p) const { return glm::dot(normal, p) + offset; }
+    };
+    struct Range {
+        std::uint32_t first = 0, count = 0;
+    };
     // A set of points in the target's plane, counted `weight` times.
     struct Region {
-        std::uint32_t first_loop = 0, loop_count = 0; ///< of loops_
+        Range loops;
         int weight = 0;
-        bool convex = false; ///< one convex loop
-        Vec2 low{0.0}, high{0.0};
+        Range windows; ///< of members_: the convex blockers whose section it is; none: not known to be convex
     };
     enum class Meeting : std::uint8_t { None, Part, WholeRegion, WholeOther };
 
     void look_at(const Vec3& x, const Loops3& target, const Vec3& normal);
-    void make_cone();
+    void make_cone(const Vec2& low, const Vec2& high);
     Vec3 seen(const Vec3& p) const;
-    bool project(const Loops3& loops, double turn, Loops2& projected);
+    bool project(const Loops3& loops, double turn);
     void subtract(const PlanarBlocker& blocker);
-    Meeting meet(std::size_t region, const PlanarBlocker& blocker, double turn);
-    Meeting cut_other(std::size_t region);
-    Meeting cut_region(std::size_t region, std::span<const Vec2> window);
-    void add_region(std::uint32_t first_loop, int weight, bool convex);
+    void add_lines(std::span<const Vec3> seen_loop, double turn, const Vec3& plane_normal);
+    Meeting meet(const Region& region, const PlanarBlocker& blocker, double turn);
+    Meeting cut_other(const Region& region);
+    Meeting cut_region(const Region& region, Range lines);
+    bool holds(Range lines, const Region& region) const;
+    void keep_within(Range lines);
+    void add_region(std::uint32_t first_loop, int weight, Range windows);
+    void add_section(std::uint32_t first_loop, const Region& region);
     const Loops3& visible_loops();
 
     Vec3 x_{0.0}, axis_u_{0.0}, axis_v_{0.0}, normal_{0.0};
     double height_ = 0.0, reach_ = 0.0, target_area_ = 0.0;
     bool target_is_window_ = false;
-    std::vector<Vec2> window_;
-    std::vector<Vec3> cone_;
-    Loops2 loops_, other_, piece_;
-    bool other_convex_ = false;
+    std::vector<Vec3> cone_, seen_;
+    Loops2 loops_; ///< of all regions
     std::vector<Region> regions_;
+    std::vector<Line> lines_;
+    std::vector<Range> members_; ///< of lines_
+    Loops2 other_;               ///< the blocker at hand, projected
+    Range other_lines_;          ///< none: not convex
     LoopCutter<Vec3> cutter_;
     LoopCutter<Vec2> flat_cutter_;
-    std::vector<Vec3> seen_;
     Loops3 visible_;
 };
 

@@ -61,6 +61,7 @@ TEST(PairBlockers, sight_is_as_the_polygons_between_say) {
     EXPECT_EQ(sight(pair, floor, ceiling, body_of({square(1.0, 1.0)})), Sight::Hidden);
     EXPECT_EQ(sight(pair, ceiling, floor, body_of({test::reversed(square(1.0, 1.0))})), Sight::Hidden);
     std::vector<Polygon> specks;
+    specks.reserve(10);
     for (int i = 0; i < 9; ++i) specks.push_back(square(0.05, 1.0, 0.2 * i - 0.8));
     EXPECT_EQ(sight(pair, floor, ceiling, body_of(specks)), Sight::Many);
     specks.push_back(square(3.0, 1.0)); // one large polygon among many small ones hides all
@@ -99,6 +100,7 @@ TEST(PairBlockers, clear_and_hidden_pairs_are_so_for_rays) {
     std::array<int, 4> seen{};
     for (int scene = 0; scene < 40; ++scene) {
         std::vector<Polygon> polygons;
+        polygons.reserve(6);
         for (int i = 0; i < 6; ++i)
             polygons.push_back(test::random_polygon(random, 0.1 + 0.9 * random.next()));
         const Body body = body_of(polygons);
