@@ -17,19 +17,17 @@ constexpr double convex_slack = 1e-12; ///< sine of a turn that counts as none
 constexpr double least_cover = 0.5;
 // So many large polygons are looked at when there are more than asked for: of those that could hide all, the tree's order
 // brings one soon or never.
-constexpr int most_looks = 32;
+constexpr int most_looks = 8;
 
 double area_along(std::span<const Vec3> points, const Vec3& direction) {
     return 0.5 * std::abs(glm::dot(direction, twice_vector_area(points)));
 }
 
-// Area that a polygon needs to be worth a look when it could only matter by hiding everything [m2]; infinite where that
-// cannot be said.
+// Area that a polygon needs to hide everything, as far as it can be said [m2].
 double least_covering_area(const Shaft& shaft, const ShaftEnd& a, const ShaftEnd& b) {
     const Vec3 way = b.box_low + b.box_high - a.box_low - a.box_high;
     const double length = glm::length(way);
-    if (!a.planar() || !b.planar() || !(length > shaft.touching()))
-        return std::numeric_limits<double>::infinity();
+    if (!a.planar() || !b.planar() || !(length > shaft.touching())) return 0.0;
     return least_cover *
            std::min(area_along(shaft.points_a(), way / length), area_along(shaft.points_b(), way / length));
 }
@@ -41,18 +39,20 @@ Sight PairBlockers::between(const ShaftEnd& a, const ShaftEnd& b, const PolygonB
     count_ = 0;
     const Shaft shaft(a, b);
     if (shaft.empty()) return Sight::Clear;
+    const double covering_area = least_covering_area(shaft, a, b);
     bool hidden = false;
-    int looks = 0; // once there are too many only what may hide all is of interest
-    double least_area = 0.0;
+    int looks = 0; // once there are too many, only what may hide all is of interest
     polygons.visit(shaft, among, [&](std::uint32_t polygon) {
         if (take(polygon, polygons, shaft)) {
-            hidden = covers_all(blockers_[count_ - 1], shaft);
+            hidden = polygons[polygon].area >= covering_area && covers_all(blockers_[count_ - 1], shaft);
             if (count_ > most) {
                 --count_;
-                if (looks++ == 0) least_area = least_covering_area(shaft, a, b);
+                ++looks;
             }
         }
-        return hidden || looks > most_looks ? std::numeric_limits<double>::infinity() : least_area;
+        if (hidden || looks > most_looks || (looks > 0 && covering_area == 0.0))
+            return std::numeric_limits<double>::infinity();
+        return looks > 0 ? covering_area : 0.0;
     });
     if (hidden) return Sight::Hidden;
     if (looks > 0) return Sight::Many;
