@@ -159,7 +159,7 @@ kernel::TransportOptions transport_options_for(const model::Scene& scene, const 
     kernel::TransportOptions options;
     options.tolerance = std::clamp(share * scene.accuracy.target / bounces, 1e-9, 0.1);
     // Errors of what stands between have random signs: a row holds many such blocks, all of them smaller than it.
-    static const double scattered = getenv("SC")?atof(getenv("SC")):5.0;
+    static const double scattered = getenv("SC") ? atof(getenv("SC")) : 5.0;
     options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
     options.occlusion = plan.static_occlusion || plan.moving_occlusion;
     return options;

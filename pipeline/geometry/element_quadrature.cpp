@@ -233,8 +233,7 @@ ElementQuadrature element_quadrature(const ElementShape& shape, int degree) {
     const std::array<int, rule_levels> exactness{std::max(1, 2 * degree), 2 * degree + 3, 2 * degree + 6};
     for (std::size_t q = 0; q < rule_levels; ++q)
         if (shape.planar || shape.surface)
-            result.rules[q] =
-                node_set(result.basis, thinned(rule(exactness[q]), exactness[q]), exactness[q]);
+            result.rules[q] = node_set(result.basis, thinned(rule(exactness[q]), exactness[q]), exactness[q]);
         else
             result.rules[q] = node_set(result.basis, systematic_nodes(shape, cells, cluster_nodes[q]), 0);
     return result;

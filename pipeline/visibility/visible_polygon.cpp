@@ -10,7 +10,8 @@
 // from a sum of regions R adds -weight times (R and B) for each R. Of two sets one is always cut by the lines that bound
 // the other, so that no case is degenerate and errors are of the size of rounding. The lines are those of the blockers
 // themselves, never of sections, whose sides may be so short that rounding turns them. The sum stays small because regions
-// that lie wholly in B cancel, and so do sections that are all of B.
+// that lie wholly in B cancel, and so do sections that are all of B; and B is left out where it hides nothing that is not
+// hidden already, as the far faces of a box.
 
 namespace kinelux::visibility {
 
@@ -96,7 +97,12 @@ const Loops3& VisiblePolygon::from(const Vec3& x, const Loops3& target, const Ve
     if (target.empty()) return visible_;
     look_at(x, target, normal);
     if (!(height_ > 0.0) || !(target_area_ > 0.0)) return visible_;
-    for (const PlanarBlocker& blocker : blockers) subtract(blocker);
+    // Faces that look at x first: they hide most of those that do not.
+    for (const double side : {1.0, -1.0})
+        for (const PlanarBlocker& blocker : blockers) {
+            const double turn = glm::dot(blocker.plane.normal, x_ - blocker.loops.points[0]);
+            if (turn * side > edge_on * reach_) subtract(blocker, turn);
+        }
     return regions_.size() == 1 && regions_[0].weight == 1 ? target : visible_loops();
 }
 
@@ -123,13 +129,12 @@ void VisiblePolygon::look_at(const Vec3& x, const Loops3& target, const Vec3& no
     regions_.clear();
     lines_.clear();
     members_.clear();
-    target_area_ = 0.0;
     for (std::size_t loop = 0; loop < target.size(); ++loop) {
         for (const Vec3& p : target[loop]) loops_.points.emplace_back(seen(p));
         loops_.ends.push_back(static_cast<std::uint32_t>(loops_.points.size()));
-        target_area_ += twice_area(loops_[loop]);
     }
     add_region(0, 1, {});
+    target_area_ = regions_[0].twice_area;
     Vec2 low = loops_.points[0], high = low;
     for (const Vec2& p : loops_.points) {
         low = glm::min(low, p);
@@ -200,9 +205,12 @@ void VisiblePolygon::add_lines(std::span<const Vec3> seen_loop, double turn, con
 }
 
 void VisiblePolygon::add_region(std::uint32_t first_loop, int weight, Range windows) {
-    regions_.push_back({.loops = {first_loop, static_cast<std::uint32_t>(loops_.size()) - first_loop},
-                        .weight = weight,
-                        .windows = windows});
+    Region region{.loops = {first_loop, static_cast<std::uint32_t>(loops_.size()) - first_loop},
+                  .weight = weight,
+                  .windows = windows};
+    for (std::size_t loop = first_loop; loop < loops_.size(); ++loop)
+        region.twice_area += twice_area(loops_[loop]);
+    regions_.push_back(region);
 }
 
 // The part of a region that the blocker hides; convex where both are.
@@ -217,15 +225,31 @@ void VisiblePolygon::add_section(std::uint32_t first_loop, const Region& region)
     add_region(first_loop, -region.weight, windows);
 }
 
-void VisiblePolygon::subtract(const PlanarBlocker& blocker) {
-    // From the plane's back its loops are seen to turn the other way.
-    const double turn = glm::dot(blocker.plane.normal, x_ - blocker.loops.points[0]);
-    if (std::abs(turn) <= edge_on * reach_ || !project(blocker.loops, turn)) return;
+// From a plane's back (turn < 0) its loops are seen to turn the other way.
+void VisiblePolygon::subtract(const PlanarBlocker& blocker, double turn) {
+    if (!project(blocker.loops, turn)) return;
     other_lines_ = {static_cast<std::uint32_t>(lines_.size()), 0};
     if (blocker.convex) add_lines(seen_, turn, blocker.plane.normal);
     other_lines_.count = static_cast<std::uint32_t>(lines_.size()) - other_lines_.first;
     const std::size_t before = regions_.size();
+    if (!subtract_from_regions(blocker, turn)) return;
+    double newly_hidden = 0.0;
+    for (std::size_t r = before; r < regions_.size(); ++r)
+        newly_hidden -= regions_[r].weight * regions_[r].twice_area;
+    if (newly_hidden > hidden_share * target_area_) return;
+    if (regions_.size() > before) {
+        const std::uint32_t first_loop = regions_[before].loops.first;
+        loops_.ends.resize(first_loop);
+        loops_.points.resize(loops_.ends.back());
+        regions_.resize(before);
+    }
+}
+
+// True when all that has changed are the regions added.
+bool VisiblePolygon::subtract_from_regions(const PlanarBlocker& blocker, double turn) {
+    const std::size_t before = regions_.size();
     int whole = 0;
+    bool only_added = true;
     for (std::size_t r = 0; r < before; ++r) {
         const Region region = regions_[r];
         if (region.weight == 0) continue;
@@ -233,16 +257,20 @@ void VisiblePolygon::subtract(const PlanarBlocker& blocker) {
         switch (r == 0 && target_is_window_ ? Meeting::WholeOther : meet(region, blocker, turn)) {
         case Meeting::None: break;
         case Meeting::WholeOther: whole -= region.weight; break;
-        case Meeting::WholeRegion: regions_[r].weight = 0; break;
         case Meeting::Part: add_section(first_loop, region); break;
+        case Meeting::WholeRegion:
+            regions_[r].weight = 0;
+            only_added = false;
+            break;
         }
     }
-    if (whole == 0) return;
+    if (whole == 0) return only_added;
     const auto first_loop = static_cast<std::uint32_t>(loops_.size());
     for (std::size_t loop = 0; loop < other_.size(); ++loop) loops_.add(other_[loop]);
     const Range windows{static_cast<std::uint32_t>(members_.size()), other_lines_.count > 0 ? 1u : 0u};
     if (windows.count > 0) members_.push_back(other_lines_);
     add_region(first_loop, whole, windows);
+    return only_added;
 }
 
 // The section of a region with the projected blocker; where it is a part of both it is left at the end of loops_.
@@ -312,9 +340,7 @@ VisiblePolygon::Meeting VisiblePolygon::cut_region(const Region& region, Range l
 
 const Loops3& VisiblePolygon::visible_loops() {
     double area = 0.0;
-    for (const Region& region : regions_)
-        for (std::uint32_t loop = 0; loop < region.loops.count; ++loop)
-            area += region.weight * twice_area(loops_[region.loops.first + loop]);
+    for (const Region& region : regions_) area += region.weight * region.twice_area;
     if (area <= hidden_share * target_area_) return visible_;
     const auto in_space = [this](const Vec2& p) {
         return x_ + p.x * axis_u_ + p.y * axis_v_ - height_ * normal_;

@@ -53,6 +53,7 @@ private:
     struct Region {
         Range loops;
         int weight = 0;
+        double twice_area = 0.0;
         Range windows; ///< of members_: the convex blockers whose section it is; none: not known to be convex
     };
     enum class Meeting : std::uint8_t { None, Part, WholeRegion, WholeOther };
@@ -61,7 +62,8 @@ private:
     void make_cone(const Vec2& low, const Vec2& high);
     Vec3 seen(const Vec3& p) const;
     bool project(const Loops3& loops, double turn);
-    void subtract(const PlanarBlocker& blocker);
+    void subtract(const PlanarBlocker& blocker, double turn);
+    bool subtract_from_regions(const PlanarBlocker& blocker, double turn);
     void add_lines(std::span<const Vec3> seen_loop, double turn, const Vec3& plane_normal);
     Meeting meet(const Region& region, const PlanarBlocker& blocker, double turn);
     Meeting cut_other(const Region& region);

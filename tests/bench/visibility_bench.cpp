@@ -62,7 +62,8 @@ World furnished_room() {
     model::PatchSet set;
     set.patches = support::box(Vec3(0), Vec3(6, 8, 3), support::Facing::Inwards);
     for (int i = 0; i < 12; ++i) {
-        const Vec3 low(0.4 + 1.8 * (i % 3), 0.5 + 1.9 * (i / 3), 0.0);
+        const int row = i / 3;
+        const Vec3 low(0.4 + 1.8 * (i % 3), 0.5 + 1.9 * row, 0.0);
         for (const auto& patch :
              support::box(low, low + Vec3(0.8, 1.1, 0.7 + 0.1 * (i % 5)), support::Facing::Outwards))
             set.patches.push_back(patch);

@@ -148,6 +148,28 @@ TEST(VisiblePolygon, targets_with_holes_and_notches_are_seen_past_everything) {
     EXPECT_NEAR(area(visible.from(eye, loops_of(ell), up, both), up), 0.5, 1e-14);
 }
 
+TEST(VisiblePolygon, far_faces_of_a_box_add_no_sides) {
+    const Vec3 low(-0.1, 0.05, 0.4), x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), z(0.0, 0.0, 1.0);
+    const Vec3 high = low + Vec3(0.3, 0.4, 0.5), d = high - low;
+    const std::vector<Polygon> faces{
+        test::rectangle(low, d.y * y, d.x * x),    test::rectangle(high, -d.x * x, -d.y * y),
+        test::rectangle(low, d.x * x, d.z * z),    test::rectangle(low, d.z * z, d.y * y),
+        test::rectangle(high, -d.z * z, -d.x * x), test::rectangle(high, -d.y * y, -d.z * z)};
+    std::vector<PlanarBlocker> all, near;
+    const Vec3 eye(0.7, -0.8, 2.0);
+    for (const Polygon& face : faces) {
+        all.push_back(blocker_of(face));
+        if (glm::dot(normal_of(face), eye - face[0]) > 0.0) near.push_back(all.back());
+    }
+    ASSERT_EQ(near.size(), 3u);
+    VisiblePolygon visible;
+    const Loops3 target = loops_of(square(2.0, 0.0));
+    const double seen = area(visible.from(eye, target, up, near), up);
+    const Loops3& past_box = visible.from(eye, target, up, all);
+    EXPECT_NEAR(area(past_box, up), seen, 1e-13);
+    EXPECT_EQ(past_box.points.size(), 16u); // the target's sides and three times four
+}
+
 TEST(VisiblePolygon, what_nothing_hides_is_the_target_itself) {
     const Loops3 target = loops_of(square(1.0, 0.0));
     const PlanarBlocker beside = blocker_of(square(0.25, 1.0, 3.0));
@@ -241,6 +263,7 @@ TEST(VisiblePolygon, the_order_of_blockers_changes_nothing) {
     for (int scene = 0; scene < 20000; ++scene) {
         const Vec3 x(random.next() - 0.5, random.next() - 0.5, 1.0 + random.next());
         std::vector<PlanarBlocker> blockers;
+        blockers.reserve(8);
         for (int b = 0; b < 8; ++b)
             blockers.push_back(blocker_of(test::random_polygon(random, 0.2 + 0.6 * random.next())));
         const double area = visible_area(x, target, blockers);
@@ -267,7 +290,7 @@ TEST(VisiblePolygon, slivers_copies_and_shared_sides_leave_exact_areas) {
                                            {0.125 * width + sliver, 0, 0}, {0, 0.125 * depth, 0})));
             for (int i = column; i < std::min(8, column + width); ++i)
                 for (int j = row; j < std::min(8, row + depth); ++j)
-                    covered[static_cast<std::size_t>(8 * i + j)] = true;
+                    covered[8 * static_cast<std::size_t>(i) + static_cast<std::size_t>(j)] = true;
         }
         const auto free = std::count(covered.begin(), covered.end(), false);
         EXPECT_NEAR(visible_area({0.0, 0.0, 2.0}, target, blockers), static_cast<double>(free) / 16.0, 1e-7)
