@@ -59,6 +59,9 @@ TEST(PairBlockers, sight_is_as_the_polygons_between_say) {
     ASSERT_EQ(pair.blockers().size(), 1u);
     EXPECT_TRUE(pair.blockers()[0].convex);
     EXPECT_EQ(sight(pair, floor, ceiling, body_of({square(1.0, 1.0)})), Sight::Hidden);
+    for (const double first : {0.1, 1.0})
+        EXPECT_EQ(sight(pair, floor, ceiling, body_of({square(first, 1.0), square(1.1 - first, 1.2)})),
+                  Sight::Hidden);
     EXPECT_EQ(sight(pair, ceiling, floor, body_of({test::reversed(square(1.0, 1.0))})), Sight::Hidden);
     std::vector<Polygon> specks;
     specks.reserve(10);

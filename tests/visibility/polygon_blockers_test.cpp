@@ -87,6 +87,14 @@ TEST(PolygonBlockers, a_wall_with_a_window_is_one_polygon) {
     EXPECT_NEAR(blockers[0].plane.offset, 1.0, 1e-15);
 }
 
+TEST(PolygonBlockers, fronts_follow_the_orientation_of_the_surface) {
+    model::PatchSet set = frame();
+    set.patches[0].surface.orientation = -1.0;
+    const PolygonBlockers blockers(bodies_of(set, scene_of(1)));
+    EXPECT_NEAR(blockers[0].plane.normal.z, -1.0, 1e-15);
+    EXPECT_EQ(blockers[0].piece_count, 4u);
+}
+
 TEST(PolygonBlockers, both_sides_of_a_sheet_are_one_polygon) {
     model::PatchSet set = frame();
     set.patches[0].surface.origin = {0.1, 0.7, 1.0 / 3.0};
@@ -148,6 +156,28 @@ TEST(PolygonBlockers, the_tree_finds_what_a_look_at_all_polygons_finds) {
         total += all.size();
     }
     EXPECT_GT(total, 500u);
+}
+
+TEST(PolygonBlockers, a_visitor_is_shown_no_polygon_smaller_than_it_asks_for_and_all_others) {
+    core::Random random(22);
+    std::vector<Body> bodies;
+    for (int i = 0; i < 400; ++i)
+        bodies.push_back(body_of(test::random_polygon(random, 0.02 + 0.3 * random.next())));
+    const PolygonBlockers blockers(bodies);
+    const Shaft shaft = shaft_between(square(1.0, -1.0), test::reversed(square(1.0, 1.0)));
+    constexpr double least_area = 0.05;
+    std::vector<std::uint32_t> visited, expected;
+    blockers.visit(shaft, Among::All, [&](std::uint32_t polygon) {
+        visited.push_back(polygon);
+        return least_area;
+    });
+    ASSERT_FALSE(visited.empty());
+    for (const std::uint32_t polygon : found_by(blockers, shaft))
+        if (polygon == visited[0] || blockers[polygon].area >= least_area) expected.push_back(polygon);
+    std::sort(visited.begin(), visited.end());
+    EXPECT_EQ(visited, expected);
+    EXPECT_GT(expected.size(), 50u);
+    EXPECT_LT(expected.size(), 300u);
 }
 
 TEST(PolygonBlockers, moved_polygons_are_found_where_they_are) {

@@ -112,6 +112,9 @@ TEST(Shaft, what_only_touches_is_missed_wherever_and_however_large) {
         {"a wall behind it", rectangle({1.3, -5.0, -3.0}, {0.0, 10.0, 0.0}, {0.0, 0.0, 9.0}), true},
         {"a leaning neighbour", rectangle({1.0, -1.0, 0.0}, {0.0, 2.0, 0.0}, {0.5, 0.0, 2.0}), true},
         {"a wall on a corner", rectangle({1.0, 1.0, 0.0}, {1.0, -1.0, 0.0}, {0.0, 0.0, 2.0}), true},
+        {"a wide wall past a corner", rectangle({4.0, -2.0, 0.0}, {-6.0, 6.0, 0.0}, {0.0, 0.0, 2.0}), true},
+        {"a wide wall across a corner", rectangle({3.9, -2.0, 0.0}, {-6.0, 6.0, 0.0}, {0.0, 0.0, 2.0}),
+         false},
         {"a shelf", square(0.3, 1.0), false},
         {"a wall across", rectangle({0.2, -5.0, 0.0}, {0.0, 10.0, 0.0}, {0.0, 0.0, 2.0}), false},
         {"a leaning wall from the edge", rectangle({1.0, -1.0, 0.0}, {0.0, 2.0, 0.0}, {-0.5, 0.0, 2.0}),
@@ -120,6 +123,20 @@ TEST(Shaft, what_only_touches_is_missed_wherever_and_however_large) {
         const Shaft shaft = shaft_between(move(floor), move(ceiling));
         for (const auto& [name, polygon, missed] : others)
             EXPECT_EQ(misses(shaft, move(polygon)), missed) << name << ", scale " << move.scale;
+    }
+}
+
+TEST(Shaft, what_only_touches_a_shaft_of_boxes_is_missed_far_from_the_origin) {
+    const Vec3 far(1e4 / 3.0, -1e4 / 7.0, 1e4 / 11.0);
+    const auto box = [&](const Vec3& low) { return shaft_end(low + far, low + Vec3(0.3) + far); };
+    const Shaft shaft(box(Vec3(0.0)), box({0.0, 0.0, 1.1}));
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 low(0.0), high(0.3, 0.3, 1.4);
+        low[axis] = high[axis];
+        high[axis] += 0.1;
+        EXPECT_TRUE(shaft.misses(low + far, high + far)) << axis;
+        low[axis] -= 1e-6;
+        EXPECT_FALSE(shaft.misses(low + far, high + far)) << axis;
     }
 }
 
