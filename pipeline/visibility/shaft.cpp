@@ -47,6 +47,19 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
     return hull;
 }
 
+// Whether few points are the corners of a convex polygon in order: the usual outline, for which no hull has to be made.
+bool is_its_hull(std::span<const Vec3> points, const Vec3& normal, const Vec3& extent) {
+    if (points.size() < 3 || points.size() > ShaftEnd::most_points) return false;
+    const double least_turn = straight * glm::dot(extent, extent);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::size_t next = i + 1 < points.size() ? i + 1 : 0;
+        const Vec3 inwards = glm::cross(normal, points[next] - points[i]);
+        for (std::size_t j = 0; j < points.size(); ++j)
+            if (j != i && j != next && !(glm::dot(inwards, points[j] - points[i]) > least_turn)) return false;
+    }
+    return true;
+}
+
 // The rectangle along the hull's longest edge.
 std::vector<Vec2> rectangle_around(const std::vector<Vec2>& hull) {
     Vec2 axis(0.0);
@@ -112,13 +125,20 @@ ShaftEnd shaft_end(const Vec3& low, const Vec3& high) {
 
 ShaftEnd shaft_end(std::span<const Vec3> points, const Vec3& normal) {
     ShaftEnd end = shaft_end(points[0], points[0]);
-    const auto [u, v] = plane_axes(normal);
-    std::vector<Vec2> flat;
     for (const Vec3& p : points) {
         end.box_low = glm::min(end.box_low, p);
         end.box_high = glm::max(end.box_high, p);
-        flat.emplace_back(glm::dot(p - points[0], u), glm::dot(p - points[0], v));
     }
+    if (is_its_hull(points, normal, end.box_high - end.box_low)) {
+        end.normal = normal;
+        end.count = points.size();
+        std::copy(points.begin(), points.end(), end.points.begin());
+        return end;
+    }
+    const auto [u, v] = plane_axes(normal);
+    std::vector<Vec2> flat;
+    flat.reserve(points.size());
+    for (const Vec3& p : points) flat.emplace_back(glm::dot(p - points[0], u), glm::dot(p - points[0], v));
     std::vector<Vec2> hull = convex_hull(std::move(flat));
     if (hull.size() < 3) return end;
     if (hull.size() > ShaftEnd::most_points) hull = rectangle_around(hull);

@@ -30,7 +30,8 @@ struct ShaftEnd {
     bool planar() const { return count > 0; }
 };
 
-/// The convex hull of points in one plane. @param normal  unit, of the plane, to the front
+/// The convex hull of points in one plane; quick where they are a convex outline, counter-clockwise from the front.
+/// @param normal  unit, of the plane, to the front
 ShaftEnd shaft_end(std::span<const Vec3> points, const Vec3& normal);
 /// A box, exchanging light through all its sides.
 ShaftEnd shaft_end(const Vec3& low, const Vec3& high);

@@ -98,6 +98,18 @@ TEST(PairBlockers, a_wall_that_stands_on_one_element_hides_what_is_behind_it) {
     }
 }
 
+TEST(PairBlockers, a_sheet_just_over_an_element_hides_it_but_one_that_lies_on_it_does_not) {
+    const Polygon floor = square(1.0, 0.0), ceiling = test::reversed(square(1.0, 2.0));
+    PairBlockers pair;
+    for (const test::Similarity& move : test::similarities()) {
+        const auto sight_under = [&](double gap) {
+            return sight(pair, move(floor), move(ceiling), body_of({move(square(1.1, gap))}));
+        };
+        EXPECT_EQ(sight_under(1e-6), Sight::Hidden);
+        EXPECT_EQ(sight_under(0.0), Sight::Clear);
+    }
+}
+
 TEST(PairBlockers, clear_and_hidden_pairs_are_so_for_rays) {
     core::Random random(77);
     std::array<int, 4> seen{};

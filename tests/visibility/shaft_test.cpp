@@ -13,6 +13,7 @@ namespace kinelux::visibility {
 namespace {
 
 using test::normal_of;
+using test::point_in;
 using test::Polygon;
 using test::rectangle;
 using test::square;
@@ -49,7 +50,7 @@ TEST(Shaft, nothing_that_crosses_a_segment_between_two_fronts_is_missed) {
         const Shaft boxes(shaft_end(end_a.box_low, end_a.box_high), shaft_end(end_b.box_low, end_b.box_high));
         const Shaft mixed(end_a, shaft_end(end_b.box_low, end_b.box_high));
         for (int i = 0; i < 20; ++i) {
-            const Vec3 x = test::point_in(a, random), y = test::point_in(b, random);
+            const Vec3 x = point_in(a, random), y = point_in(b, random);
             const bool in_front = glm::dot(normal_of(a), y - x) > 1e-6;
             const Vec3 at = x + (0.01 + 0.98 * random.next()) * (y - x);
             const Polygon there = speck(at, random, 1e-3);
@@ -152,6 +153,25 @@ TEST(Shaft, many_cornered_and_hollow_outlines_are_held_by_their_ends) {
     for (std::size_t i = 0; i < end.count; ++i) {
         const Vec3 edge = end.points[(i + 1) % end.count] - end.points[i];
         for (const Vec3& p : star) EXPECT_GE(glm::cross(edge, p - end.points[i]).z, -1e-12);
+    }
+}
+
+TEST(Shaft, the_order_of_points_in_a_plane_does_not_matter) {
+    core::Random random(6);
+    for (int i = 0; i < 300; ++i) {
+        const Polygon polygon = test::random_polygon(random, 0.5);
+        const ShaftEnd outline = end_of(polygon);
+        Polygon shuffled = polygon;
+        shuffled.push_back(point_in(polygon, random));
+        for (std::size_t k = shuffled.size() - 1; k > 0; --k)
+            std::swap(shuffled[k],
+                      shuffled[static_cast<std::size_t>(random.next() * static_cast<double>(k + 1))]);
+        const ShaftEnd hull = shaft_end(shuffled, normal_of(polygon));
+        ASSERT_EQ(hull.count, outline.count);
+        for (std::size_t k = 0; k < hull.count; ++k)
+            EXPECT_TRUE(std::any_of(polygon.begin(), polygon.end(),
+                                    [&](const Vec3& p) { return glm::distance(p, hull.points[k]) < 1e-12; }));
+        EXPECT_EQ(hull.box_low, outline.box_low);
     }
 }
 
