@@ -206,8 +206,8 @@ private:
     // Nodes with which errors can be measured; few for coarse and many for fine tolerances are the cheapest in the end.
     void ask_for_measuring(Cell& cell) const {
         const double tolerance = options_.tolerance;
-        const int by_tolerance = tolerance >= 3e-3 ? 3 : tolerance >= 1e-4 ? 4 : tolerance >= 1e-6 ? 6 : 8;
-        const int nodes = std::min(by_tolerance + (element_.basis.degree() + 1) / 2, most_nodes);
+        const int by_tolerance = tolerance >= 3e-3 ? 2 : tolerance >= 1e-4 ? 3 : tolerance >= 1e-6 ? 5 : 7;
+        const int nodes = std::clamp(by_tolerance + (element_.basis.degree() + 1) / 2, 3, most_nodes);
         cell.s.nodes = cell.t.nodes = nodes;
     }
 

@@ -211,9 +211,9 @@ public:
         const bool flat = a_.planar && b_.planar;
         const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_));
         const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
-        if (rule && (sight != Sight::Few || !flat || !options_.exact_sight)) far(*rule, sight);
-        else if (!flat) by_nodes(sight);
-        else near(sight);
+        if (!flat && !rule) by_nodes(sight);
+        else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper())) near(sight);
+        else far(*rule, sight);
         return finished();
     }
 
@@ -224,11 +224,26 @@ private:
                                  options_.occluders, options_.most_blockers);
     }
 
+    // Sampled visibility is off by half the root of the number of rays; clipping by less than its outer rule's tolerance.
+    double rays_for_sight() const { return 0.25 / (options_.sight_tolerance * options_.sight_tolerance); }
+
+    // Predicted times [us], as measured by kernel_bench.
+    bool clipping_is_cheaper() const {
+        if (!options_.exact_sight) return false;
+        constexpr double per_ray = 0.15, per_point = 1.5, per_blocker = 0.7, points = 20.0;
+        const auto blockers = static_cast<double>(blockers_.blockers().size());
+        return points * (per_point + per_blocker * blockers) < per_ray * rays_for_sight();
+    }
+
     void far(const FarRule& rule, Sight sight) {
-        const std::size_t least_rays = sight == Sight::Clear ? 0 : rays_level();
-        const NodeSet& xs = a_.rules[std::max(rule.level_a, least_rays)];
-        const NodeSet& ys = b_.rules[std::max(rule.level_b, least_rays)];
-        node_product(xs, ys, sight);
+        std::size_t level_a = rule.level_a, level_b = rule.level_b;
+        const auto rays = [&] { return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size()); };
+        while (sight != Sight::Clear && rays() < rays_for_sight()) {
+            const bool a_next = level_a <= level_b;
+            if ((a_next ? level_a : level_b) + 1 == geometry::rule_levels) break;
+            ++(a_next ? level_a : level_b);
+        }
+        node_product(a_.rules[level_a], b_.rules[level_b], sight);
         block_.error = std::hypot(block_.error, rule.error);
     }
 
@@ -237,8 +252,6 @@ private:
         node_product(a_.rules.back(), b_.rules.back(), sight);
         block_.error = std::hypot(block_.error, nodes_guess * frobenius_norm(block_.values));
     }
-
-    std::size_t rays_level() const { return options_.tolerance >= 1e-2 ? 0 : options_.tolerance >= 1e-3 ? 1 : 2; }
 
     void node_product(const NodeSet& xs, const NodeSet& ys, Sight sight) {
         Rays rays(occluders_, options_, sight != Sight::Clear);
