@@ -88,9 +88,8 @@ std::vector<std::vector<Vec3>> surface_grid(const model::Surface& surface, const
     for (int i = 0; i <= samples; ++i) {
         rows.emplace_back();
         for (int j = 0; i + j <= samples; ++j)
-            rows.back().push_back(
-                position(surface, facet.parameters[0] + static_cast<double>(i) * step_1 +
-                                      static_cast<double>(j) * step_2));
+            rows.back().push_back(position(surface, facet.parameters[0] + static_cast<double>(i) * step_1 +
+                                                        static_cast<double>(j) * step_2));
     }
     return rows;
 }
@@ -149,8 +148,8 @@ double curved_cone_cosine(const ElementShape& shape) {
                 widest = std::max(widest, angle_between(normal, shape.mean_normal));
                 if (j > 0) largest_turn = std::max(largest_turn, angle_between(normal, row.back()));
                 if (i > 0)
-                    largest_turn = std::max(
-                        largest_turn, angle_between(normal, previous_row[static_cast<std::size_t>(j)]));
+                    largest_turn = std::max(largest_turn,
+                                            angle_between(normal, previous_row[static_cast<std::size_t>(j)]));
                 row.push_back(normal);
             }
     }
@@ -260,8 +259,8 @@ ElementShape moved(const ElementShape& rest, const Pose& pose) {
     return shape;
 }
 
-SurfaceNode node_at(const ElementShape& element, const Facet& facet,
-                    const std::array<double, 3>& barycentric, Vec2& parameter) {
+SurfaceNode node_at(const ElementShape& element, const Facet& facet, const std::array<double, 3>& barycentric,
+                    Vec2& parameter) {
     const auto& p = facet.parameters;
     parameter = barycentric[0] * p[0] + barycentric[1] * p[1] + barycentric[2] * p[2];
     if (!element.surface) {

@@ -36,7 +36,7 @@ struct SurfaceNode {
 struct NodeSet {
     std::vector<SurfaceNode> nodes;
     std::vector<double> basis; ///< nodes x basis size: basis values at the nodes [1/m]
-    int exactness = 0;         ///< total degree in the parameters up to which it is exact, with the area factor
+    int exactness = 0; ///< total degree in the parameters up to which it is exact, with the area factor
 };
 
 /// Rules of different exactness that every element has.
@@ -83,8 +83,8 @@ ElementShape moved(const ElementShape& rest, const Pose& pose);
 /// @return  position, true normal, and as weight the area per share of the facet: the mean of the weight over the facet
 ///          is the true area of its part of the element [m2]
 /// @throws GeometryError  a point where the surface has no normal
-SurfaceNode node_at(const ElementShape& element, const Facet& facet,
-                    const std::array<double, 3>& barycentric, Vec2& parameter);
+SurfaceNode node_at(const ElementShape& element, const Facet& facet, const std::array<double, 3>& barycentric,
+                    Vec2& parameter);
 
 /// The basis parameter at a point of a facet, interpolated between its corners.
 Vec2 facet_parameter(const Facet& facet, const Vec3& point);

@@ -88,8 +88,8 @@ std::vector<std::vector<TriangleCorner>> boundary_loops(std::span<const std::arr
             edges[next].used = true;
             walk.push_back(next);
             at = edges[next].to;
-            const auto met = std::find_if(walk.begin(), walk.end(),
-                                          [&](std::size_t e) { return edges[e].from == at; });
+            const auto met =
+                std::find_if(walk.begin(), walk.end(), [&](std::size_t e) { return edges[e].from == at; });
             if (met == walk.end()) continue;
             close(std::span(met, walk.end()));
             walk.erase(met, walk.end());

@@ -42,7 +42,8 @@ struct Surface {
     double half_angle_rad = 0.0;
     double orientation = 1.0; ///< +1 or -1
     BSpline bspline;          ///< only for BSpline
-    std::array<Vec3, 4> corners{}; ///< only for Bilinear, counter-clockwise seen from the front at orientation 1 [m]
+    std::array<Vec3, 4>
+        corners{}; ///< only for Bilinear, counter-clockwise seen from the front at orientation 1 [m]
 };
 
 /// A trimmed piece of one surface: what carries radiosity as a smooth function.

@@ -38,9 +38,9 @@ ElementShape ell(int degree) {
 }
 
 ElementShape frame(int degree) {
-    return planar_element({{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}},
-                          {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}},
-                          degree);
+    return planar_element(
+        {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}},
+        {{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}, degree);
 }
 
 ElementShape curved_element(const model::Patch& patch, int degree) {
@@ -154,17 +154,18 @@ struct CurvedCase {
 // Areas in closed form; bilinear and whole surfaces with seam and poles among them.
 std::vector<CurvedCase> curved_cases() {
     const double slope = std::tan(0.3), r = 0.25;
-    return {{support::surface_patch(support::tilted_surface(SurfaceType::Cylinder), {0.2, -1}, {1.4, 2}), 3.6},
-            {support::surface_patch(support::tilted_surface(SurfaceType::Cone), {0.2, 0}, {1.2, 2}),
-             (2.0 + 2.0 * slope) / std::cos(0.3)},
-            {support::surface_patch(support::tilted_surface(SurfaceType::Sphere), {0, 0}, {0.5 * pi, 0.5 * pi}),
-             0.5 * pi},
-            {support::surface_patch(support::tilted_surface(SurfaceType::Torus), {0, 0.2}, {1, 1.5}),
-             r * (1.3 + r * (std::sin(1.5) - std::sin(0.2)))},
-            {support::whole_sphere(), 4.0 * pi},
-            {support::whole_sphere(-1.0), 4.0 * pi},
-            {support::surface_patch(support::tilted_surface(SurfaceType::Torus), {0, 0}, {2 * pi, 2 * pi}),
-             4.0 * pi * pi * r}};
+    return {
+        {support::surface_patch(support::tilted_surface(SurfaceType::Cylinder), {0.2, -1}, {1.4, 2}), 3.6},
+        {support::surface_patch(support::tilted_surface(SurfaceType::Cone), {0.2, 0}, {1.2, 2}),
+         (2.0 + 2.0 * slope) / std::cos(0.3)},
+        {support::surface_patch(support::tilted_surface(SurfaceType::Sphere), {0, 0}, {0.5 * pi, 0.5 * pi}),
+         0.5 * pi},
+        {support::surface_patch(support::tilted_surface(SurfaceType::Torus), {0, 0.2}, {1, 1.5}),
+         r * (1.3 + r * (std::sin(1.5) - std::sin(0.2)))},
+        {support::whole_sphere(), 4.0 * pi},
+        {support::whole_sphere(-1.0), 4.0 * pi},
+        {support::surface_patch(support::tilted_surface(SurfaceType::Torus), {0, 0}, {2 * pi, 2 * pi}),
+         4.0 * pi * pi * r}};
 }
 
 TEST(ElementShape, curved_elements_have_their_true_area_and_an_orthonormal_basis) {
@@ -194,8 +195,9 @@ TEST(ElementShape, bounds_and_normal_cone_hold_the_true_surface) {
         const ElementShape shape = moved(curved_element(patch, 0), pose);
         for (int i = 0; i <= 50; ++i)
             for (int j = 0; j <= 50; ++j) {
-                const Vec2 at = glm::mix(patch.points[0], patch.points[2],
-                                         Vec2(std::clamp(i / 50.0, 1e-9, 1 - 1e-9), std::clamp(j / 50.0, 1e-9, 1 - 1e-9)));
+                const Vec2 at = glm::mix(
+                    patch.points[0], patch.points[2],
+                    Vec2(std::clamp(i / 50.0, 1e-9, 1 - 1e-9), std::clamp(j / 50.0, 1e-9, 1 - 1e-9)));
                 const SurfaceJet jet = evaluate(*shape.surface, at);
                 EXPECT_TRUE(glm::all(glm::lessThanEqual(shape.box_low, jet.position)));
                 EXPECT_TRUE(glm::all(glm::lessThanEqual(jet.position, shape.box_high)));
