@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 
@@ -159,7 +158,7 @@ kernel::TransportOptions transport_options_for(const model::Scene& scene, const 
     kernel::TransportOptions options;
     options.tolerance = std::clamp(share * scene.accuracy.target / bounces, 1e-9, 0.1);
     // Errors of what stands between have random signs: a row holds many such blocks, all of them smaller than it.
-    static const double scattered = getenv("SC") ? atof(getenv("SC")) : 5.0;
+    constexpr double scattered = 20.0;
     options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
     options.occlusion = plan.static_occlusion || plan.moving_occlusion;
     return options;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -18,11 +19,9 @@ namespace {
 
 // Corners of a parallelogram may be off by this share of its edges: rounding of cuts on tilted planes.
 constexpr double parallelogram_tolerance = 1e-12;
-// The area of a curved element is known when halving its cells changes it by less than this share.
+// The area of a curved element is known when a finer rule changes it by less than this share.
 constexpr double area_tolerance = 1e-12;
 constexpr int most_halvings = 3; ///< of the cells of a curved element
-// Degrees that the area factor of a curved element is taken to need beyond the polynomials'.
-constexpr int area_factor_degree = 10;
 constexpr std::array<std::size_t, rule_levels> cluster_nodes{16, 64, 256}; ///< at the most
 
 struct ElementNode {
@@ -156,20 +155,46 @@ double area_of(std::span<const ElementNode> nodes) {
     return sum;
 }
 
-// A rule on the true surface that is as good as exact for its area.
-std::vector<ElementNode> curved_nodes(const ElementShape& shape, std::span<const Cell> cells, int degree) {
-    const int with_area = degree + area_factor_degree;
-    std::vector<Cell> parts(cells.begin(), cells.end());
-    std::vector<ElementNode> nodes = nodes_in(shape, parts, with_area);
-    for (int halving = 0; halving < most_halvings; ++halving) {
-        parts = halved(parts);
-        std::vector<ElementNode> finer = nodes_in(shape, parts, with_area);
-        const double area = area_of(finer);
-        const double change = std::abs(area - area_of(nodes));
-        nodes = std::move(finer);
-        if (change <= area_tolerance * area) break;
+// Cells of an element and the degree of a polynomial on each that the area factor cannot be told from.
+struct AreaModel {
+    std::vector<Cell> cells;
+    int degree = 0;
+};
+
+// Per cell the integral of the area factor with second powers of the cell's coordinates. The area of the whole agrees
+// between rules also where symmetry hides how coarse they are (whole turns of tori and spheres).
+std::vector<double> moments_of_area(const ElementShape& shape, std::span<const Cell> cells, int degree) {
+    std::vector<double> moments;
+    for (const Cell& cell : cells) {
+        double& sum = moments.emplace_back(0.0);
+        for (const ReferenceNode& at : reference_rule(cell.form, degree))
+            sum += (1.0 + at.s * at.s + at.t * at.t) * node_in(shape, cell, at).node.weight;
     }
-    return nodes;
+    return moments;
+}
+
+bool agree(std::span<const double> a, std::span<const double> b) {
+    double difference = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        difference += std::abs(a[i] - b[i]);
+        sum += a[i];
+    }
+    return difference <= area_tolerance * sum;
+}
+
+// Raises the degree, then halves the cells, until those moments no longer change. Where the surface is not smooth enough
+// for that, the finest cells stand.
+AreaModel resolved_area(const ElementShape& shape, std::vector<Cell> cells) {
+    constexpr int highest = 12, step = 2;
+    if (!shape.surface) return {std::move(cells), 0};
+    for (int halving = 0;; ++halving, cells = halved(cells)) {
+        std::vector<double> moments = moments_of_area(shape, cells, step);
+        for (int degree = 2 * step; degree <= highest; degree += step) {
+            const std::vector<double> coarser = std::exchange(moments, moments_of_area(shape, cells, degree));
+            if (agree(moments, coarser)) return {std::move(cells), degree};
+        }
+        if (halving == most_halvings) return {std::move(cells), highest};
+    }
 }
 
 std::vector<DomainPoint> domain_points(std::span<const ElementNode> nodes) {
@@ -222,10 +247,8 @@ NodeSet node_set(const Basis& basis, std::span<const ElementNode> nodes, int exa
 } // namespace
 
 ElementQuadrature element_quadrature(const ElementShape& shape, int degree) {
-    const std::vector<Cell> cells = cells_of(shape);
-    const auto rule = [&](int exactness) {
-        return shape.surface ? curved_nodes(shape, cells, exactness) : nodes_in(shape, cells, exactness);
-    };
+    const AreaModel model = resolved_area(shape, cells_of(shape));
+    const auto rule = [&](int exactness) { return nodes_in(shape, model.cells, exactness + model.degree); };
     const std::vector<ElementNode> domain = rule(2 * degree);
     ElementQuadrature result{area_of(domain), Vec3(0.0), Basis(domain_points(domain), degree), {}};
     for (const ElementNode& n : domain) result.normal_area += n.node.weight * n.node.normal;
@@ -235,7 +258,8 @@ ElementQuadrature element_quadrature(const ElementShape& shape, int degree) {
         if (shape.planar || shape.surface)
             result.rules[q] = node_set(result.basis, thinned(rule(exactness[q]), exactness[q]), exactness[q]);
         else
-            result.rules[q] = node_set(result.basis, systematic_nodes(shape, cells, cluster_nodes[q]), 0);
+            result.rules[q] =
+                node_set(result.basis, systematic_nodes(shape, model.cells, cluster_nodes[q]), 0);
     return result;
 }
 

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "geometry/quadrature.h"
 
 namespace kinelux::geometry {
 
@@ -177,11 +178,31 @@ Vec2 plane_parameters(const model::Surface& surface, const Vec3& x) {
     return {glm::dot(offset, surface.axis_u), glm::dot(offset, surface.axis_v)};
 }
 
+namespace {
+
+// Degree of a triangle's rule for the area factor: constant on planes and cylinders, linear on cones; over half a turn of
+// v the cosine of spheres and tori is as good as a polynomial of degree 20.
+int area_degree(const model::Surface& surface) {
+    switch (surface.type) {
+    case model::SurfaceType::Plane:
+    case model::SurfaceType::Cylinder: return 0;
+    case model::SurfaceType::Cone: return 1;
+    default: return 20;
+    }
+}
+
+} // namespace
+
 double area(const model::Patch& patch) {
     double sum = 0.0;
     for (const model::Triangle& t : patch.triangles) {
         const Vec2 &p = patch.points[t[0]], a = patch.points[t[1]] - p, b = patch.points[t[2]] - p;
-        sum += 0.5 * std::abs(a.x * b.y - a.y * b.x) * evaluate(patch.surface, p + (a + b) / 3.0).area_factor;
+        double mean = 0.0;
+        for (const TriangleNode& node : triangle_rule(area_degree(patch.surface)))
+            mean +=
+                node.weight *
+                evaluate(patch.surface, p + node.barycentric[1] * a + node.barycentric[2] * b).area_factor;
+        sum += 0.5 * std::abs(a.x * b.y - a.y * b.x) * mean;
     }
     return sum;
 }

@@ -28,7 +28,8 @@ model::Surface moved(const model::Surface& surface, const Pose& pose);
 /// Parameters of the point of a plane nearest to x. @param surface  a Plane
 Vec2 plane_parameters(const model::Surface& surface, const Vec3& x);
 
-/// Area of a patch [m2], by one node per triangle of its domain: exact on planes, cylinders and cones.
+/// Area of a patch [m2]: exact on planes, cylinders and cones, to rounding on spheres and tori whose triangles span half
+/// a turn of v or less, by a rule of degree 20 per triangle on the others.
 double area(const model::Patch& patch);
 /// Area of all small triangles [m2].
 double area(const model::SmallTriangles& small);

@@ -69,8 +69,7 @@ Vec2 barycentric(const Facet& facet, const Vec3& point) {
 
 // Convex pieces of a planar element in front of another one's plane.
 std::vector<OuterPiece> pieces_in_front(const ElementShape& a, const HalfSpace& front, double slack) {
-    const bool whole =
-        a.outline.size() == 1 && visibility::is_convex(a.outline.front(), a.facets.front().normal, 1e-12);
+    const bool whole = a.outline.size() == 1 && visibility::is_convex(a.outline.front(), a.facets.front().normal, 1e-12);
     std::vector<OuterPiece> pieces;
     visibility::LoopCutter<Vec3> cutter;
     const auto add = [&](std::span<const Vec3> loop, const Facet& facet) {
@@ -80,8 +79,7 @@ std::vector<OuterPiece> pieces_in_front(const ElementShape& a, const HalfSpace& 
         pieces.push_back({&facet, {}});
         for (const Vec3& point : cutter.loop()) pieces.back().corners.push_back(barycentric(facet, point));
     };
-    if (whole)
-        add(a.outline.front(), a.facets.front());
+    if (whole) add(a.outline.front(), a.facets.front());
     else
         for (const Facet& facet : a.facets) add(facet.corners, facet);
     return pieces;
@@ -188,8 +186,7 @@ public:
         for (std::size_t l = 0; l < values.size(); ++l) values[l] = share * exact_[l];
         for (std::size_t j = 0; j < kernel_.size(); ++j) {
             const double weight = scale * ys.nodes[j].weight * (seen_[j] - share * kernel_[j]);
-            for (std::size_t l = 0; l < values.size(); ++l)
-                values[l] += weight * ys.basis[j * values.size() + l];
+            for (std::size_t l = 0; l < values.size(); ++l) values[l] += weight * ys.basis[j * values.size() + l];
         }
     }
 
@@ -214,12 +211,9 @@ public:
         const bool flat = a_.planar && b_.planar;
         const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_));
         const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
-        if (rule && (sight != Sight::Few || !flat || !options_.exact_sight))
-            far(*rule, sight);
-        else if (!flat)
-            by_nodes(sight);
-        else
-            near(sight);
+        if (!flat && !rule) by_nodes(sight);
+        else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper())) near(sight);
+        else far(*rule, sight);
         return finished();
     }
 
@@ -230,11 +224,26 @@ private:
                                  options_.occluders, options_.most_blockers);
     }
 
+    // Sampled visibility is off by half the root of the number of rays; clipping by less than its outer rule's tolerance.
+    double rays_for_sight() const { return 0.25 / (options_.sight_tolerance * options_.sight_tolerance); }
+
+    // Predicted times [us], as measured by kernel_bench.
+    bool clipping_is_cheaper() const {
+        if (!options_.exact_sight) return false;
+        constexpr double per_ray = 0.15, per_point = 1.5, per_blocker = 0.7, points = 20.0;
+        const auto blockers = static_cast<double>(blockers_.blockers().size());
+        return points * (per_point + per_blocker * blockers) < per_ray * rays_for_sight();
+    }
+
     void far(const FarRule& rule, Sight sight) {
-        const std::size_t least_rays = sight == Sight::Clear ? 0 : rays_level();
-        const NodeSet& xs = a_.rules[std::max(rule.level_a, least_rays)];
-        const NodeSet& ys = b_.rules[std::max(rule.level_b, least_rays)];
-        node_product(xs, ys, sight);
+        std::size_t level_a = rule.level_a, level_b = rule.level_b;
+        const auto rays = [&] { return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size()); };
+        while (sight != Sight::Clear && rays() < rays_for_sight()) {
+            const bool a_next = level_a <= level_b;
+            if ((a_next ? level_a : level_b) + 1 == geometry::rule_levels) break;
+            ++(a_next ? level_a : level_b);
+        }
+        node_product(a_.rules[level_a], b_.rules[level_b], sight);
         block_.error = std::hypot(block_.error, rule.error);
     }
 
@@ -242,10 +251,6 @@ private:
     void by_nodes(Sight sight) {
         node_product(a_.rules.back(), b_.rules.back(), sight);
         block_.error = std::hypot(block_.error, nodes_guess * frobenius_norm(block_.values));
-    }
-
-    std::size_t rays_level() const {
-        return options_.tolerance >= 1e-2 ? 0 : options_.tolerance >= 1e-3 ? 1 : 2;
     }
 
     void node_product(const NodeSet& xs, const NodeSet& ys, Sight sight) {
@@ -285,8 +290,7 @@ private:
             outer_options.refine = true;
             outer_options.floor = 0.1 * std::sqrt(outer.area / inner.area);
             outer_options.most_points = 4000;
-            PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(),
-                                       gather_share * options_.sight_tolerance);
+            PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(), gather_share * options_.sight_tolerance);
             result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
         } else {
             Rays rays(occluders_, options_, true);
@@ -304,8 +308,7 @@ private:
         const std::size_t na = a_.basis.size(), nb = b_.basis.size();
         for (std::size_t k = 0; k < na; ++k)
             for (std::size_t l = 0; l < nb; ++l)
-                block_.values[k * nb + l] =
-                    transposed ? result.values[l * na + k] : result.values[k * nb + l];
+                block_.values[k * nb + l] = transposed ? result.values[l * na + k] : result.values[k * nb + l];
     }
 
     TransportBlock finished() {
@@ -313,7 +316,7 @@ private:
         return std::move(block_);
     }
 
-    static constexpr double gather_share = 0.1;       ///< of the tolerance for the inner integrals
+    static constexpr double gather_share = 0.1;      ///< of the tolerance for the inner integrals
     static constexpr double sampled_tolerance = 1e-2; ///< finer outer quadrature would only cost rays
     static constexpr double nodes_guess = 0.1;
 
