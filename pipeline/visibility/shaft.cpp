@@ -148,11 +148,13 @@ ShaftEnd shaft_end(std::span<const Vec3> points, const Vec3& normal) {
 }
 
 ShaftEnd shaft_end(const geometry::ElementShape& element) {
-    if (!element.planar || element.facets.empty()) return shaft_end(element.box_low, element.box_high);
-    std::vector<Vec3> corners;
-    for (const geometry::Facet& facet : element.facets)
-        corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-    return shaft_end(corners, element.facets[0].normal);
+    if (!element.planar || element.outline.empty()) return shaft_end(element.box_low, element.box_high);
+    const Vec3& normal = element.facets[0].normal;
+    if (element.outline.size() == 1) return shaft_end(element.outline[0], normal);
+    std::vector<Vec3> points;
+    for (const std::vector<Vec3>& loop : element.outline)
+        points.insert(points.end(), loop.begin(), loop.end());
+    return shaft_end(points, normal);
 }
 
 Shaft::Shaft(const ShaftEnd& a, const ShaftEnd& b) {

@@ -35,7 +35,7 @@ struct ShaftEnd {
 ShaftEnd shaft_end(std::span<const Vec3> points, const Vec3& normal);
 /// A box, exchanging light through all its sides.
 ShaftEnd shaft_end(const Vec3& low, const Vec3& high);
-/// An element: the hull of its facets where they lie in one plane, else its box.
+/// An element: the hull of its outline where it is planar, else its box.
 ShaftEnd shaft_end(const geometry::ElementShape& element);
 
 /// Where the segments between two elements run that leave one in front and arrive at the other in front: an

@@ -183,11 +183,17 @@ TEST(Shaft, an_element_off_its_plane_is_a_box) {
     const ShaftEnd end = shaft_end(element);
     EXPECT_FALSE(end.planar());
     EXPECT_EQ(end.box_high, Vec3(1.0, 2.0, 3.0));
-    element.planar = true;
-    element.facets.resize(2);
-    element.facets[0].corners = {Vec3(0.0), Vec3(1.0, 0.0, 0.0), Vec3(1.0, 1.0, 0.0)};
-    element.facets[1].corners = {Vec3(0.0), Vec3(1.0, 1.0, 0.0), Vec3(0.0, 1.0, 0.0)};
-    element.facets[0].normal = element.facets[1].normal = {0.0, 0.0, 1.0};
+}
+
+TEST(Shaft, a_planar_element_is_the_hull_of_its_outline) {
+    geometry::ElementShape element;
+    element.facets.resize(1);
+    element.facets[0].normal = {0.0, 0.0, 1.0};
+    element.outline = {square(1.0, 0.5), test::reversed(square(0.5, 0.5))};
+    EXPECT_EQ(shaft_end(element).count, 4u);
+    EXPECT_EQ(shaft_end(element).box_low, Vec3(-1.0, -1.0, 0.5));
+    element.outline = {square(1.0, 0.5, -1.0), square(1.0, 0.5, 3.0)};
+    EXPECT_EQ(shaft_end(element).box_high, Vec3(4.0, 1.0, 0.5));
     EXPECT_EQ(shaft_end(element).count, 4u);
 }
 
