@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
+#include "core/error.h"
 #include "core/sequence.h"
 #include "io/case_folder.h"
 #include "support/shapes.h"
@@ -303,11 +305,14 @@ void register_world(const std::string& name, World&& made) {
 } // namespace
 } // namespace kinelux
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     benchmark::Initialize(&argc, argv);
     kinelux::register_world("room", kinelux::furnished_room());
     for (int i = 1; i < argc; ++i)
         kinelux::register_world(std::filesystem::path(argv[i]).stem().string(), kinelux::case_world(argv[i]));
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
+} catch (const kinelux::core::Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
 }
