@@ -148,6 +148,19 @@ TEST(VisiblePolygon, targets_with_holes_and_notches_are_seen_past_everything) {
     EXPECT_NEAR(area(visible.from(eye, loops_of(ell), up, both), up), 0.5, 1e-14);
 }
 
+TEST(VisiblePolygon, walls_on_the_target_hide_their_exact_share_from_an_eye_at_its_level) {
+    const Polygon target = square(1.0, 0.0);
+    for (const double h : {1e-2, 1e-4, 1e-6}) {
+        const auto visible_over = [&](double height) {
+            const Polygon wall = test::rectangle({0.0, -9.0, 0.0}, {0.0, 18.0, 0.0}, {0.0, 0.0, height});
+            return visible_area({-2.0, 0.0, h}, target, {blocker_of(wall)});
+        };
+        const double rounding = 1e-13 / h; // of heights
+        EXPECT_NEAR(visible_over(1.0), 2.0, rounding);
+        EXPECT_NEAR(visible_over(h / 4.0), 4.0 - 2.0 * 2.0 / 3.0, rounding);
+    }
+}
+
 TEST(VisiblePolygon, far_faces_of_a_box_add_no_sides) {
     const Vec3 low(-0.1, 0.05, 0.4), x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), z(0.0, 0.0, 1.0);
     const Vec3 high = low + Vec3(0.3, 0.4, 0.5), d = high - low;
