@@ -57,9 +57,10 @@ const KronrodRule& kronrod_15() {
 
 double kronrod_error(double difference, double size) {
     constexpr double caution = 200.0, power = 1.5, rounding = 10.0 * std::numeric_limits<double>::epsilon();
+    constexpr double least = 0.2; // of the difference: at kinks the Kronrod rule gains no more than that
     if (!(size > 0.0)) return difference;
     const double estimate = size * std::pow(caution * difference / size, power);
-    return std::max(std::min(difference, estimate), rounding * size);
+    return std::max({std::min(difference, estimate), least * difference, rounding * size});
 }
 
 } // namespace kinelux::geometry

@@ -22,7 +22,7 @@ using geometry::KronrodRule;
 constexpr std::size_t most_functions = geometry::basis_size(geometry::max_degree);
 constexpr std::size_t most_nodes = 15;
 // From this tolerance on the rule of 7 nodes needs fewer evaluations than that of 15.
-constexpr double short_rule_tolerance = 1e-4;
+constexpr double short_rule_tolerance = 3e-3;
 constexpr double hidden_tolerance = 1e-2; ///< what sampling visibility is worth at the best
 constexpr std::size_t most_evaluations = 400000, most_hidden_evaluations = 4000;
 // Share of the tolerance that the integrals along rays may use.
@@ -286,30 +286,40 @@ private:
         return nodes;
     }
 
-    Sum part_of_ray(const Ray& ray, double low, double high, int depth) {
+    // Whether the signs at the ends of a part of a ray are known not to differ from those at its nodes.
+    enum class Ends { Unknown, Known };
+
+    // Whether the clearance has another sign somewhere on a part of a ray whose nodes are all alike.
+    bool turns_at_ends(const Ray& ray, double low, double high, const Nodes& nodes) {
+        const double first = clearance_on(ray, low), last = clearance_on(ray, high);
+        return nodes.faced > 0 ? first < 0.0 || last < 0.0 : first > 0.0 || last > 0.0;
+    }
+
+    Sum part_of_ray(const Ray& ray, double low, double high, int depth, Ends ends) {
         const Nodes nodes = nodes_on(ray, low, high);
         const auto clearances = std::span(nodes.clearances).first(rule_.nodes.size());
-        const auto divided = [&](std::span<const double> cuts, int left) {
+        const auto divided = [&](std::span<const double> cuts, int left, Ends known) {
             Sum sum;
             for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
-                sum.add(part_of_ray(ray, cuts[k], cuts[k + 1], left), 1.0, functions_);
+                sum.add(part_of_ray(ray, cuts[k], cuts[k + 1], left, known), 1.0, functions_);
             return sum;
         };
         const bool spent = depth == 0 || evaluations_ > limit_;
+        const bool mixed = nodes.faced > 0 && nodes.turned_away > 0;
+        if (!spent && (mixed || (ends == Ends::Unknown && turns_at_ends(ray, low, high, nodes))))
+            return divided(cut_at_roots([&](double w) { return clearance_on(ray, w); }, low, high),
+                           std::max(0, depth - cut_depth), Ends::Known);
         const std::array<double, 3> halves{low, 0.5 * (low + high), high};
         if (nodes.faced == 0) {
-            if (!spent && depth > ray_depth / 2 && near_miss(clearances)) return divided(halves, depth - 1);
+            if (!spent && depth > ray_depth / 2 && near_miss(clearances))
+                return divided(halves, depth - 1, ends);
             Sum none;
             none.clearance = *std::max_element(clearances.begin(), clearances.end());
             return none;
         }
-        if (nodes.turned_away > 0 && !spent) {
-            const auto cuts = cut_at_roots([&](double w) { return clearance_on(ray, w); }, low, high);
-            return divided(cuts, std::max(0, depth - cut_depth));
-        }
         const Sum sum = rule_sum(nodes);
         if (sum.error <= ray_share * tolerance_ * sum.size || spent) return sum;
-        return divided(halves, depth - 1);
+        return divided(halves, depth - 1, Ends::Known);
     }
 
     Sum rule_sum(const Nodes& nodes) {
@@ -336,7 +346,8 @@ private:
         const auto parts = static_cast<int>(std::ceil(high / longest_interval));
         Sum sum;
         for (int k = 0; k < parts; ++k)
-            sum.add(part_of_ray(ray, high * k / parts, high * (k + 1) / parts, ray_depth), 1.0, functions_);
+            sum.add(part_of_ray(ray, high * k / parts, high * (k + 1) / parts, ray_depth, Ends::Unknown), 1.0,
+                    functions_);
         return sum;
     }
 
