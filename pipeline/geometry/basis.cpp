@@ -76,4 +76,33 @@ void Basis::evaluate(const Vec2& parameter, std::span<double> values) const {
     }
 }
 
+std::vector<double> Basis::monomial_coefficients() const {
+    // Row k of `legendre` holds the coefficients of P_k by powers.
+    std::array<std::array<double, max_degree + 1>, max_degree + 1> legendre{};
+    legendre[0][0] = 1.0;
+    legendre[1][1] = 1.0;
+    for (std::size_t k = 2; k <= max_degree; ++k)
+        for (std::size_t p = 0; p <= k; ++p) {
+            const auto order = static_cast<double>(k);
+            const double raised = p > 0 ? (2.0 * order - 1.0) * legendre[k - 1][p - 1] : 0.0;
+            legendre[k][p] = (raised - (order - 1.0) * legendre[k - 2][p]) / order;
+        }
+    const auto index = [](std::size_t x_power, std::size_t y_power) {
+        const std::size_t total = x_power + y_power;
+        return total * (total + 1) / 2 + y_power;
+    };
+    const std::size_t n = size();
+    const auto degree = static_cast<std::size_t>(degree_);
+    std::vector<double> result(n * n, 0.0);
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t total = 0; total <= degree; ++total)
+            for (std::size_t j = 0; j <= total; ++j) {
+                const double coefficient = coefficients_[k * n + index(total - j, j)];
+                for (std::size_t p = 0; p <= total - j; ++p)
+                    for (std::size_t q = 0; q <= j; ++q)
+                        result[k * n + index(p, q)] += coefficient * legendre[total - j][p] * legendre[j][q];
+            }
+    return result;
+}
+
 } // namespace kinelux::geometry

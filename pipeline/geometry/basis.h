@@ -27,6 +27,11 @@ public:
     std::size_t size() const { return basis_size(degree_); }
     /// All functions at a parameter point. @param values  size() values [1/m]
     void evaluate(const Vec2& parameter, std::span<double> values) const;
+    /// The coordinates (x, y) in which the domain fills [-1, 1]^2; affine in the parameter.
+    Vec2 scaled(const Vec2& parameter) const { return frame_.scaled(parameter); }
+    /// The functions as polynomials of the scaled coordinates: size() x size(), row k = function k, columns the
+    /// monomials x^(t-j) y^j by total degree t, then by j [1/m].
+    std::vector<double> monomial_coefficients() const;
 
 private:
     int degree_ = 0;

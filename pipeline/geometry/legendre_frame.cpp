@@ -63,10 +63,14 @@ LegendreFrame::LegendreFrame(std::span<const DomainPoint> domain) {
     inverse_half_extent_ = 1.0 / glm::max(half_extent, Vec2(std::numeric_limits<double>::min() * 1e20));
 }
 
-void LegendreFrame::products(const Vec2& parameter, int degree, std::span<double> values) const {
+Vec2 LegendreFrame::scaled(const Vec2& parameter) const {
     const Vec2 d = parameter - centre_;
-    const double x = glm::dot(d, axis_u_) * inverse_half_extent_.x;
-    const double y = glm::dot(d, axis_v_) * inverse_half_extent_.y;
+    return Vec2(glm::dot(d, axis_u_), glm::dot(d, axis_v_)) * inverse_half_extent_;
+}
+
+void LegendreFrame::products(const Vec2& parameter, int degree, std::span<double> values) const {
+    const Vec2 at = scaled(parameter);
+    const double x = at.x, y = at.y;
     std::array<double, max_degree + 1> px{1.0, x}, py{1.0, y};
     for (int k = 2; k <= degree; ++k) {
         const auto i = static_cast<std::size_t>(k);

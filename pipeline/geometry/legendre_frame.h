@@ -33,6 +33,9 @@ public:
     /// @param values  basis_size(degree) or more values [1]
     void products(const Vec2& parameter, int degree, std::span<double> values) const;
 
+    /// The coordinates the products are made of: affine in the parameter, [-1, 1]^2 on the domain's bounding box.
+    Vec2 scaled(const Vec2& parameter) const;
+
 private:
     Vec2 centre_{0.0};
     Vec2 axis_u_{1.0, 0.0}, axis_v_{0.0, 1.0};
