@@ -23,8 +23,9 @@ public:
 
     Point at(const Vec2& local) const;
 
-    /// Local coordinates of the point of the facet's part nearest to x, found from samples by Gauss-Newton steps; where
-    /// several points are as near as each other, one of them.
+    /// Local coordinates of the point of the facet's part nearest to x, found from samples by Gauss-Newton steps: to
+    /// rounding where x is near compared with the surface's radii of curvature, else as near as the samples (four per
+    /// edge) get. Where several points are as near as each other, one of them.
     Vec2 nearest(const Vec3& x) const;
 
 private:

@@ -121,6 +121,70 @@ TEST(CurvedIrradiance, self_factor_of_a_cylinder_is_its_closed_form) {
     }
 }
 
+TEST(CurvedIrradiance, all_functions_agree_with_plain_quadrature_from_afar) {
+    for (const SurfaceType type : {SurfaceType::Sphere, SurfaceType::Bilinear, SurfaceType::Cone}) {
+        const ElementShape shape = elements(part(type, 1.0, {0.1, 0.1}, {0.9, 0.9}), 1, 4)[0];
+        const Vec3 x = shape.centre + 3.0 * shape.mean_normal + Vec3(0.3, 0.2, 0.0),
+                   normal = -shape.mean_normal;
+        std::vector<double> values(shape.basis.size()), phi(values.size()), plain(values.size(), 0.0);
+        const double error = curved_irradiance(x, normal, shape, 1e-9, values);
+        for (const geometry::Facet& facet : shape.facets)
+            for (const geometry::TriangleNode& t : geometry::triangle_rule(32)) {
+                Vec2 parameter;
+                const geometry::SurfaceNode y = geometry::node_at(shape, facet, t.barycentric, parameter);
+                const Vec3 way = y.position - x;
+                const double kernel = glm::dot(normal, way) * -glm::dot(y.normal, way) /
+                                      (pi * glm::dot(way, way) * glm::dot(way, way));
+                shape.basis.evaluate(parameter, phi);
+                for (std::size_t l = 0; l < phi.size(); ++l)
+                    plain[l] += t.weight * y.weight * kernel * phi[l];
+            }
+        for (std::size_t l = 0; l < plain.size(); ++l)
+            EXPECT_NEAR(values[l], plain[l], 1e-9 * plain[0] + error);
+    }
+}
+
+TEST(CurvedIrradiance, does_not_depend_on_scale_and_place) {
+    const model::Surface unit = support::tilted_surface(SurfaceType::Cylinder, -1.0);
+    const auto at = [&](double scale, const Vec3& offset) {
+        model::Surface s = unit;
+        s.radius = scale;
+        s.origin = scale * (unit.origin + offset);
+        const auto shapes = elements(support::surface_patch(s, {0, 0}, {1, scale}), 1, 2);
+        const geometry::SurfaceJet jet = geometry::evaluate(s, {0.4, -0.01 * scale});
+        return factor(jet.position, s.axis_w, shapes, 1e-7).value;
+    };
+    const double value = at(1.0, Vec3(0.0));
+    EXPECT_GT(value, 0.05);
+    EXPECT_NEAR(at(1e-6, Vec3(0.0)), value, 1e-7 * value);
+    EXPECT_NEAR(at(1e6, Vec3(0.0)), value, 1e-7 * value);
+    EXPECT_NEAR(at(1.0, Vec3(1e3, -1e3, 1e3)), value, 1e-7 * value);
+}
+
+TEST(CurvedIrradiance, hidden_points_do_not_count) {
+    const model::Surface sphere = support::tilted_surface(SurfaceType::Sphere);
+    const auto shapes = elements(support::whole_sphere(), 4, 0);
+    const Vec3 way(0.0, 0.0, 1.0), x = sphere.origin - 2.0 * way;
+    double sum = 0.0, open = 0.0;
+    std::vector<double> values(1);
+    for (const ElementShape& shape : shapes) {
+        curved_irradiance(x, way, shape, 1e-3, values);
+        open += values[0] * std::sqrt(shape.area);
+        curved_irradiance(x, way, shape, 1e-3, values, [&](const Vec3& y) { return y.x > sphere.origin.x; });
+        sum += values[0] * std::sqrt(shape.area);
+    }
+    EXPECT_NEAR(open, 0.25, 1e-3);
+    EXPECT_NEAR(sum, 0.125, 0.01);
+}
+
+TEST(CurvedIrradiance, a_receiver_behind_the_surface_gets_nothing) {
+    const model::Surface sphere = support::tilted_surface(SurfaceType::Sphere);
+    const auto shapes = elements(support::whole_sphere(), 4, 2);
+    const geometry::SurfaceJet jet = geometry::evaluate(sphere, {0.4, 0.3});
+    EXPECT_EQ(factor(jet.position, jet.normal, shapes, 1e-6).value, 0.0);
+    EXPECT_EQ(factor(sphere.origin, jet.normal, shapes, 1e-6).value, 0.0);
+}
+
 TEST(CurvedIrradiance, estimated_errors_cover_the_true_ones) {
     const auto shapes = elements(part(SurfaceType::Torus, -1.0, {0, 0}, {1, 1.5}), 2, 3);
     const model::Surface s = support::tilted_surface(SurfaceType::Torus, -1.0);
