@@ -103,7 +103,8 @@ Vec2 FacetSurface::nearest(const Vec3& x) const {
 
     const std::array<Vec2, 3> corners{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
     for (std::size_t c = 0; c < 3; ++c) {
-        const Vec2 from = corners[c], way = corners[(c + 1) % 3] - from;
+        const Vec2& from = corners[c];
+        const Vec2 way = corners[(c + 1) % 3] - from;
         for (const Vec2& start : {free, best}) {
             const Vec2 candidate =
                 nearest_on_edge(x, from, from + way, glm::dot(start - from, way) / glm::dot(way, way));
