@@ -12,8 +12,9 @@ namespace kinelux::geometry {
 
 namespace {
 
-// A function whose part orthogonal to the earlier ones is below this share of it is not determined by the domain.
-constexpr double rank_tolerance = 1e-6;
+// A function whose part orthogonal to the earlier ones is below this share of it is not determined by the domain: its
+// coefficients would be so large that their rounding shows in the basis.
+constexpr double rank_tolerance = 1e-5;
 double dot(std::span<const double> a, std::span<const double> b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];

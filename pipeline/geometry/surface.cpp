@@ -16,16 +16,11 @@ namespace kinelux::geometry {
 
 namespace {
 
-// A surface's position with its first derivatives.
-struct Derivatives {
-    Vec3 x, x_u, x_v;
-};
-
-Derivatives plane(const model::Surface& s, const Vec2& uv) {
+SurfaceTangents plane(const model::Surface& s, const Vec2& uv) {
     return {s.origin + uv.x * s.axis_u + uv.y * s.axis_v, s.axis_u, s.axis_v};
 }
 
-Derivatives bilinear(const model::Surface& s, const Vec2& uv) {
+SurfaceTangents bilinear(const model::Surface& s, const Vec2& uv) {
     const auto& [a, b, c, d] = s.corners;
     const double u = uv.x, v = uv.y;
     return {(1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * d + u * c),
@@ -33,7 +28,7 @@ Derivatives bilinear(const model::Surface& s, const Vec2& uv) {
 }
 
 // Cylinders and cones: a circle of radius r(v) = radius + slope v, moved along axis_w.
-Derivatives lathed_line(const model::Surface& s, const Vec2& uv, double slope) {
+SurfaceTangents lathed_line(const model::Surface& s, const Vec2& uv, double slope) {
     const Vec3 e = std::cos(uv.x) * s.axis_u + std::sin(uv.x) * s.axis_v;
     const Vec3 e_u = std::cos(uv.x) * s.axis_v - std::sin(uv.x) * s.axis_u;
     const double r = s.radius + slope * uv.y;
@@ -41,7 +36,7 @@ Derivatives lathed_line(const model::Surface& s, const Vec2& uv, double slope) {
 }
 
 // Spheres and tori: a circle of radius `minor` about the point `major` e(u).
-Derivatives lathed_circle(const model::Surface& s, const Vec2& uv, double major, double minor) {
+SurfaceTangents lathed_circle(const model::Surface& s, const Vec2& uv, double major, double minor) {
     const Vec3 e = std::cos(uv.x) * s.axis_u + std::sin(uv.x) * s.axis_v;
     const Vec3 e_u = std::cos(uv.x) * s.axis_v - std::sin(uv.x) * s.axis_u;
     const double r = major + minor * std::cos(uv.y);
@@ -108,7 +103,7 @@ void check_spline(const model::BSpline& s) {
     }
 }
 
-Derivatives spline(const model::BSpline& s, const Vec2& uv) {
+SurfaceTangents spline(const model::BSpline& s, const Vec2& uv) {
     check_spline(s);
     const SplineFunctions along_u = spline_functions(s.knots_u, s.degree_u, s.count_u, uv.x);
     const SplineFunctions along_v = spline_functions(s.knots_v, s.degree_v, s.count_v, uv.y);
@@ -134,7 +129,9 @@ Derivatives spline(const model::BSpline& s, const Vec2& uv) {
     return {x, (top_u - weight_u * x) / weight, (top_v - weight_v * x) / weight};
 }
 
-Derivatives derivatives(const model::Surface& s, const Vec2& uv) {
+} // namespace
+
+SurfaceTangents surface_tangents(const model::Surface& s, const Vec2& uv) {
     switch (s.type) {
     case model::SurfaceType::Plane: return plane(s, uv);
     case model::SurfaceType::Cylinder: return lathed_line(s, uv, 0.0);
@@ -147,20 +144,20 @@ Derivatives derivatives(const model::Surface& s, const Vec2& uv) {
     throw core::GeometryError("a surface of unknown type");
 }
 
-} // namespace
-
 SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv) {
-    const Derivatives d = derivatives(surface, uv);
-    const Vec3 across = glm::cross(d.x_u, d.x_v);
+    const SurfaceTangents d = surface_tangents(surface, uv);
+    const Vec3 across = glm::cross(d.along_u, d.along_v);
     const double area_factor = glm::length(across);
     if (!(area_factor > 0.0) || !std::isfinite(area_factor)) {
         throw core::GeometryError("a surface has no normal at u = " + std::to_string(uv.x) + ", v = " +
                                   std::to_string(uv.y) + "; keep its domain away from poles and tips");
     }
-    return {d.x, (surface.orientation / area_factor) * across, area_factor};
+    return {d.position, (surface.orientation / area_factor) * across, area_factor};
 }
 
-Vec3 position(const model::Surface& surface, const Vec2& uv) { return derivatives(surface, uv).x; }
+Vec3 position(const model::Surface& surface, const Vec2& uv) {
+    return surface_tangents(surface, uv).position;
+}
 
 model::Surface moved(const model::Surface& surface, const Pose& pose) {
     model::Surface result = surface;

@@ -14,6 +14,17 @@ struct SurfaceJet {
     double area_factor; ///< dA / (du dv)
 };
 
+/// A point of a parametric surface with its derivatives by u and v.
+struct SurfaceTangents {
+    Vec3 position; ///< [m]
+    Vec3 along_u;  ///< [m per unit of u]
+    Vec3 along_v;  ///< [m per unit of v]
+};
+
+/// Position and derivatives, which every surface has also where it has no normal.
+/// @throws GeometryError  a B-spline whose sizes do not fit
+SurfaceTangents surface_tangents(const model::Surface& surface, const Vec2& uv);
+
 /// Evaluates any surface type at (u,v); see model::Surface for the parametrisations.
 /// @throws GeometryError  a B-spline whose sizes do not fit, or a point where the surface has no normal
 SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv);
