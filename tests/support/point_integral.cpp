@@ -216,10 +216,12 @@ void PointIntegral::add_polar(const Receiver& receiver, const Part& part) const 
         for (int panel = 0; panel < panels; ++panel)
             for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
                 const double v = v0 + (v1 - v0) * (panel + rule.nodes[i]) / panels;
-                const Vec2 y = base + g * std::sinh(v) * e;
+                const double growth = std::exp(v); // sinh and cosh share it
+                const Vec2 y = base + 0.5 * g * (growth - 1.0 / growth) * e;
                 const double radius2 = glm::dot(y, y);
                 const Moments j = radial_moments(h / std::sqrt(radius2), degree + 2);
-                const double weight = rule.weights[i] * (v1 - v0) / panels * g * std::cosh(v) * d * h /
+                const double weight = rule.weights[i] * (v1 - v0) / panels * 0.5 * g *
+                                      (growth + 1.0 / growth) * d * h /
                                       (std::numbers::pi * radius2 * radius2);
                 const double normal_part = h * receiver.facing, slope_part = glm::dot(receiver.slope, y);
                 for_monomials(degree, y / reach, [&](std::size_t k, std::size_t m, double value) {

@@ -101,7 +101,7 @@ Judgement judge(const PairRecipe& recipe, double tolerance) {
     const auto reference = support::pair_reference(pair.a, pair.b);
     judgement.reference_seconds = seconds_since(start);
     judgement.norm = reference.norm;
-    const double scale = reference.norm > 0.0 ? 1.0 / reference.norm : 1.0;
+    const double scale = 1.0 / std::max(reference.norm, negligible_norm);
     judgement.error = scale * difference(block.values, reference.values);
     judgement.estimate = scale * block.error;
     judgement.uncertainty = scale * reference.disagreement;

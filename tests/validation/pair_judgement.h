@@ -30,6 +30,9 @@ struct Judgement {
 /// A reference of this accuracy or better can judge blocks of every tolerance down to 1e-6.
 constexpr double reference_accuracy = 1e-7;
 
+/// A block as small is not asked to be right to a share of itself.
+constexpr double negligible_norm = 1e-9;
+
 /// @throws OptionError  no class of that name
 PairClass class_named(std::string_view name);
 
