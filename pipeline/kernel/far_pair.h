@@ -20,12 +20,13 @@ struct FarRule {
 
 /// The cheapest rules whose error stays below a tolerance, or nothing where the elements are too close for any.
 /// @param tolerance  relative to what the block would be if its centres spoke for all of it [1]
-std::optional<FarRule> far_rule(const geometry::ElementShape& a, const geometry::ElementShape& b, double tolerance);
+std::optional<FarRule> far_rule(const geometry::ElementShape& a, const geometry::ElementShape& b,
+                                double tolerance);
 
 /// values(k,l) += sum over node pairs of w_x phi_k(x) kernel(x,y) w_y phi_l(y).
 /// @param kernel  nodes of xs x nodes of ys [1/m2]
 /// @param na, nb  basis sizes
-void add_node_product(const geometry::NodeSet& xs, std::size_t na, const geometry::NodeSet& ys, std::size_t nb,
-                      std::span<const double> kernel, std::span<double> values);
+void add_node_product(const geometry::NodeSet& xs, std::size_t na, const geometry::NodeSet& ys,
+                      std::size_t nb, std::span<const double> kernel, std::span<double> values);
 
 } // namespace kinelux::kernel

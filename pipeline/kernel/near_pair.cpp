@@ -119,7 +119,8 @@ private:
         constexpr double parallel = 1e-12;
         const double length2 = glm::dot(edge, edge);
         if (!(length2 > 0.0)) return;
-        const Vec3 r_across = r0 - glm::dot(r0, edge) / length2 * edge, d_across = d - glm::dot(d, edge) / length2 * edge;
+        const Vec3 r_across = r0 - glm::dot(r0, edge) / length2 * edge,
+                   d_across = d - glm::dot(d, edge) / length2 * edge;
         const double d2 = glm::dot(d_across, d_across);
         if (d2 <= parallel * glm::dot(d, d)) return;
         const double real = -glm::dot(r_across, d_across) / d2;
@@ -130,7 +131,8 @@ private:
     }
 
     void consider_plane(const Vec3& a, const Vec3& d, Singularity& nearest) const {
-        const double h0 = glm::dot(polygon_.normal, a - polygon_.origin), slope = glm::dot(polygon_.normal, d);
+        const double h0 = glm::dot(polygon_.normal, a - polygon_.origin),
+                     slope = glm::dot(polygon_.normal, d);
         if (std::abs(slope) > 0.0) consider({-h0 / slope, 0.0}, 0.0, nearest);
     }
 
@@ -242,8 +244,10 @@ private:
                              position(cell.facet, c[1] + at * (c[2] - c[1])), t);
         }
         const double share = area_of(cell) / total_area_;
-        const double s_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[1])), position(cell.facet, 0.5 * (c[2] + c[3])));
-        const double t_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[3])), position(cell.facet, 0.5 * (c[1] + c[2])));
+        const double s_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[1])),
+                                              position(cell.facet, 0.5 * (c[2] + c[3])));
+        const double t_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[3])),
+                                              position(cell.facet, 0.5 * (c[1] + c[2])));
         const bool s_resolved = choose(s, share, s_length, cell.s);
         const bool t_resolved = choose(t, share, t_length, cell.t);
         return s_resolved && t_resolved;
@@ -258,7 +262,8 @@ private:
         const double degree = std::log(amplitude / wanted) / std::max(log_rate, 1e-9);
         const double nodes = std::ceil(0.5 * (degree + extra));
         direction.nodes = static_cast<int>(std::clamp(nodes, double{fewest}, double{most}));
-        direction.foretold = std::min(1.0, amplitude * std::pow(nearest.rate, -(2.0 * direction.nodes - extra)));
+        direction.foretold =
+            std::min(1.0, amplitude * std::pow(nearest.rate, -(2.0 * direction.nodes - extra)));
         if (nodes <= most) return true;
         // A singularity that the cell all but touches is weak: the integrand only bends there, over the cell's length.
         const double size = 2.0 * element_.radius;
@@ -339,7 +344,8 @@ private:
                 }
             }
         for (std::size_t i = 0; i < ns; ++i)
-            for (std::size_t e = 0; e < size_; ++e) cell.values[e] += s_rule.weights[i] * along_s_[i * size_ + e];
+            for (std::size_t e = 0; e < size_; ++e)
+                cell.values[e] += s_rule.weights[i] * along_s_[i * size_ + e];
         if (options_.refine) {
             cell.s.raw_error = error_along(along_s_, cell.s.nodes);
             cell.t.raw_error = error_along(along_t_, cell.t.nodes);
@@ -349,8 +355,7 @@ private:
     // entries_ = phi_k(x) gather_l(x) times the area per (s, t) at one point.
     void set_entries(const Facet* facet, const Vec2& at, double jacobian) {
         Vec2 parameter;
-        const SurfaceNode x =
-            geometry::node_at(element_, *facet, {1.0 - at.x - at.y, at.x, at.y}, parameter);
+        const SurfaceNode x = geometry::node_at(element_, *facet, {1.0 - at.x - at.y, at.x, at.y}, parameter);
         inner_.gather(x, gathered_);
         ++points_;
         element_.basis.evaluate(parameter, phi_);
@@ -381,7 +386,8 @@ private:
     }
 
     static constexpr std::size_t most_planned = 4000;
-    static constexpr double amplitude = 4.0; ///< of an integrand on the ellipse through its nearest singularity
+    static constexpr double amplitude =
+        4.0; ///< of an integrand on the ellipse through its nearest singularity
 
     const ElementShape& element_;
     std::size_t columns_, size_;
@@ -395,8 +401,8 @@ private:
 
 } // namespace
 
-OuterResult integrate_outer(const ElementShape& element, std::span<const OuterPiece> pieces, std::size_t columns,
-                            PointGather& inner, const OuterOptions& options) {
+OuterResult integrate_outer(const ElementShape& element, std::span<const OuterPiece> pieces,
+                            std::size_t columns, PointGather& inner, const OuterOptions& options) {
     return OuterIntegrator(element, columns, inner, options).run(pieces);
 }
 

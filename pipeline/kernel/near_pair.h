@@ -33,11 +33,12 @@ struct InnerPolygon {
 };
 
 struct OuterOptions {
-    double tolerance = 1e-3; ///< of the sum's Frobenius norm [1], 1e-10..0.1
-    double floor = 0.0;      ///< norm below which only tolerance times it is asked for [1]
+    double tolerance = 1e-3;               ///< of the sum's Frobenius norm [1], 1e-10..0.1
+    double floor = 0.0;                    ///< norm below which only tolerance times it is asked for [1]
     std::size_t most_points = 20000;       ///< evaluations of the inner integral
     const InnerPolygon* polygon = nullptr; ///< the first cells and their rules are planned from its edges
-    bool refine = true; ///< false where the polygon says all there is to know: all of it is visible from everywhere
+    bool refine =
+        true; ///< false where the polygon says all there is to know: all of it is visible from everywhere
 };
 
 struct OuterResult {

@@ -29,14 +29,16 @@ struct RadialIntegrals {
 RadialIntegrals radial_upwards(double rho2, double h, std::size_t count) {
     RadialIntegrals result;
     const double rho = std::sqrt(rho2), h2 = h * h, r2 = rho2 + h2;
-    std::array<double, most_moments> i, j; // h I_m, h J_m
+    std::array<double, most_moments> i, j;         // h I_m, h J_m
     const double angle = std::atan2(rho, h) / rho; // h J_(-1)
     j[0] = h * std::log1p(rho2 / h2) / (2.0 * rho2);
     j[1] = (h - h2 * angle) / rho2;
     result.h2_times[0] = 0.5 / r2;
     i[1] = (angle - h / r2) / (2.0 * rho2);
-    if (h2 > 0.0) i[2] = (j[0] - h * result.h2_times[0]) / rho2;
-    else j[0] = i[2] = 0.0;
+    if (h2 > 0.0)
+        i[2] = (j[0] - h * result.h2_times[0]) / rho2;
+    else
+        j[0] = i[2] = 0.0;
     for (std::size_t m = 2; m < count; ++m) j[m] = (h / static_cast<double>(m) - h2 * j[m - 2]) / rho2;
     for (std::size_t m = 3; m < count; ++m) i[m] = (j[m - 2] - h2 * i[m - 2]) / rho2;
     result.h_times[0] = 0.0;
@@ -105,7 +107,8 @@ struct EdgeIntegrator {
         const double length = glm::distance(a, b);
         if (!(length > 0.0)) return;
         const Vec2 along = (b - a) / length;
-        const double distance = a.x * along.y - a.y * along.x; // of the edge's line from O, > 0: O to its left
+        const double distance =
+            a.x * along.y - a.y * along.x; // of the edge's line from O, > 0: O to its left
         const double c = std::hypot(distance, h);
         const double t0 = glm::dot(a, along), t1 = t0 + length;
         if (std::abs(distance) < std::numeric_limits<double>::epsilon() * length) return;
@@ -197,15 +200,16 @@ void PolygonMoments::to_plane(const visibility::Loops3& loops, visibility::Loops
     flat.ends = loops.ends;
 }
 
-void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
-                            std::span<double> values) const {
+void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops,
+                            double tolerance, std::span<double> values) const {
     std::fill(values.begin(), values.end(), 0.0);
     const double h = glm::dot(front_, x - origin_);
     if (!(h > 0.0)) return;
     const Vec2 foot = to_plane(x);
     const Vec2 scaled_foot = scaled_origin_ + foot.x * scaled_u_ + foot.y * scaled_v_;
     // Moments about a foot far outside the domain cancel when they are taken about its centre.
-    const double cancellation = std::pow(1.0 + std::max(std::abs(scaled_foot.x), std::abs(scaled_foot.y)), degree_);
+    const double cancellation =
+        std::pow(1.0 + std::max(std::abs(scaled_foot.x), std::abs(scaled_foot.y)), degree_);
     constexpr double finest = 1e-15;
     const EdgeIntegrator integrator{h,
                                     glm::dot(normal, front_),

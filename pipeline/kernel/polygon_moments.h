@@ -37,7 +37,7 @@ public:
                 std::span<double> values) const;
 
 private:
-    Vec3 origin_, axis_u_, axis_v_, front_; ///< orthonormal frame of the plane
+    Vec3 origin_, axis_u_, axis_v_, front_;    ///< orthonormal frame of the plane
     Vec2 scaled_origin_, scaled_u_, scaled_v_; ///< the basis' scaled coordinates: origin + a u + b v
     int degree_;
     std::vector<double> monomials_; ///< Basis::monomial_coefficients

@@ -69,7 +69,8 @@ Vec2 barycentric(const Facet& facet, const Vec3& point) {
 
 // Convex pieces of a planar element in front of another one's plane.
 std::vector<OuterPiece> pieces_in_front(const ElementShape& a, const HalfSpace& front, double slack) {
-    const bool whole = a.outline.size() == 1 && visibility::is_convex(a.outline.front(), a.facets.front().normal, 1e-12);
+    const bool whole =
+        a.outline.size() == 1 && visibility::is_convex(a.outline.front(), a.facets.front().normal, 1e-12);
     std::vector<OuterPiece> pieces;
     visibility::LoopCutter<Vec3> cutter;
     const auto add = [&](std::span<const Vec3> loop, const Facet& facet) {
@@ -79,7 +80,8 @@ std::vector<OuterPiece> pieces_in_front(const ElementShape& a, const HalfSpace& 
         pieces.push_back({&facet, {}});
         for (const Vec3& point : cutter.loop()) pieces.back().corners.push_back(barycentric(facet, point));
     };
-    if (whole) add(a.outline.front(), a.facets.front());
+    if (whole)
+        add(a.outline.front(), a.facets.front());
     else
         for (const Facet& facet : a.facets) add(facet.corners, facet);
     return pieces;
@@ -186,7 +188,8 @@ public:
         for (std::size_t l = 0; l < values.size(); ++l) values[l] = share * exact_[l];
         for (std::size_t j = 0; j < kernel_.size(); ++j) {
             const double weight = scale * ys.nodes[j].weight * (seen_[j] - share * kernel_[j]);
-            for (std::size_t l = 0; l < values.size(); ++l) values[l] += weight * ys.basis[j * values.size() + l];
+            for (std::size_t l = 0; l < values.size(); ++l)
+                values[l] += weight * ys.basis[j * values.size() + l];
         }
     }
 
@@ -211,9 +214,12 @@ public:
         const bool flat = a_.planar && b_.planar;
         const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_));
         const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
-        if (!flat && !rule) by_nodes(sight);
-        else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper())) near(sight);
-        else far(*rule, sight);
+        if (!flat && !rule)
+            by_nodes(sight);
+        else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper()))
+            near(sight);
+        else
+            far(*rule, sight);
         return finished();
     }
 
@@ -237,7 +243,9 @@ private:
 
     void far(const FarRule& rule, Sight sight) {
         std::size_t level_a = rule.level_a, level_b = rule.level_b;
-        const auto rays = [&] { return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size()); };
+        const auto rays = [&] {
+            return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size());
+        };
         while (sight != Sight::Clear && rays() < rays_for_sight()) {
             const bool a_next = level_a <= level_b;
             if ((a_next ? level_a : level_b) + 1 == geometry::rule_levels) break;
@@ -290,7 +298,8 @@ private:
             outer_options.refine = true;
             outer_options.floor = 0.1 * std::sqrt(outer.area / inner.area);
             outer_options.most_points = 4000;
-            PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(), gather_share * options_.sight_tolerance);
+            PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(),
+                                       gather_share * options_.sight_tolerance);
             result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
         } else {
             Rays rays(occluders_, options_, true);
@@ -308,7 +317,8 @@ private:
         const std::size_t na = a_.basis.size(), nb = b_.basis.size();
         for (std::size_t k = 0; k < na; ++k)
             for (std::size_t l = 0; l < nb; ++l)
-                block_.values[k * nb + l] = transposed ? result.values[l * na + k] : result.values[k * nb + l];
+                block_.values[k * nb + l] =
+                    transposed ? result.values[l * na + k] : result.values[k * nb + l];
     }
 
     TransportBlock finished() {
@@ -316,7 +326,7 @@ private:
         return std::move(block_);
     }
 
-    static constexpr double gather_share = 0.1;      ///< of the tolerance for the inner integrals
+    static constexpr double gather_share = 0.1;       ///< of the tolerance for the inner integrals
     static constexpr double sampled_tolerance = 1e-2; ///< finer outer quadrature would only cost rays
     static constexpr double nodes_guess = 0.1;
 

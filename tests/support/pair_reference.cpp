@@ -20,8 +20,9 @@ constexpr double vanishing_side =
     1e-4;                           ///< projected / real length of a side that is perpendicular to the piece
 constexpr double close_side = 0.02; ///< of a side's length
 constexpr double grading = 0.2;     ///< where a cell at the border of its triangle is cut
-constexpr double negligible_block = 1e-9; ///< a smaller block is right to a share of this
+constexpr double negligible_block = 1e-6; ///< a smaller block is right to a share of this
 constexpr double light_cell = 10.0;       ///< in tolerances of a cell
+constexpr int most_cells = 400;           ///< of one triangle: beyond it the disagreement says what is left
 constexpr int most_cuts = 60;             ///< of one cell into ever smaller ones
 
 double norm_of(std::span<const double> values) {
@@ -133,6 +134,7 @@ public:
         size_ = norm_of(rough);
         for (std::size_t t = 0; t < triangles_.size(); ++t) {
             triangle_ = triangles_[t];
+            cells_ = 0;
             refine({0.0, 1.0, 0.0, 1.0}, roots[t], 0, sums);
             size_ = std::max(size_, norm_of(sums));
         }
@@ -233,10 +235,11 @@ private:
         const Along first = whole.unrest_s >= whole.unrest_t ? Along::S : Along::T;
         // A step as narrow as a gap may hide below the first node: a cell at the side is cut until it is light.
         const bool hiding = triangle_.at_side && cell.s0 == 0.0 && largest_value(cell) > light_cell * enough;
+        cells_ += 2;
         Halves halves = cut_along(hiding ? Along::S : first, cell, whole);
         if (!hiding && halves.change <= enough)
             halves = cut_along(first == Along::S ? Along::T : Along::S, cell, whole);
-        if ((!hiding && halves.change <= enough) || cuts >= most_cuts) {
+        if ((!hiding && halves.change <= enough) || cuts >= most_cuts || cells_ >= most_cells) {
             for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += halves.a.block[k] + halves.b.block[k];
             return;
         }
@@ -254,6 +257,7 @@ private:
     std::vector<OuterTriangle> triangles_;
     OuterTriangle triangle_{};
     double size_ = 0.0;
+    int cells_ = 0; ///< of the triangle at hand
 };
 
 std::vector<double> from_the_side_of(const ElementShape& a, const ElementShape& b, double tolerance) {

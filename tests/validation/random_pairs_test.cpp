@@ -24,7 +24,7 @@ TEST_P(RandomPairs, blocks_keep_the_tolerance_and_their_estimates_are_honest) {
     const auto judgements = judge_series(pairs_asked_for(), seed, GetParam(), "", -1);
     std::size_t judged = 0, within = 0, dishonest = 0;
     for (const Judgement& judgement : judgements) {
-        if (judgement.uncertainty > GetParam()) continue; // no judge for it
+        if (judgement.uncertainty > judge_share * GetParam()) continue; // no judge for it
         ++judged;
         within += judgement.within_tolerance() ? 1u : 0u;
         dishonest += judgement.honest() ? 0u : 1u;
