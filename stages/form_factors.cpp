@@ -1,27 +1,93 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "form_factors.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "cli/driver.h"
 #include "cli/text.h"
+#include "coefficients/whole_patch_factors.h"
 #include "core/error.h"
 #include "core/run_record.h"
+#include "geometry/pose.h"
 #include "light_case.h"
 
 namespace kinelux::stages {
 
 namespace {
 
-void write_csv(const std::filesystem::path& file, const Groups& groups,
+constexpr double default_accuracy = 1e-3;
+constexpr std::size_t most_blockers =
+    100; ///< between two whole walls stands much; clipping is worth its time
+
+// A case's surfaces at one frame, planar patches whole.
+struct Surfaces {
+    model::Scene scene;
+    model::PatchSet patches;
+    model::ClusterTree tree;
+    std::vector<geometry::ElementShape> elements;
+    visibility::Occluders occluders;
+};
+
+Surfaces read_surfaces(const io::CaseFolder& folder, std::uint32_t frame) {
+    model::Scene scene = folder.read_scene();
+    if (frame >= scene.time.frames)
+        throw core::OptionError(
+            fmt::format("--frame {}: the scene has frames 0 to {}", frame, scene.time.frames - 1));
+    model::PatchSet patches = folder.read_patches();
+    const model::ClusterTree tree = folder.read_clusters();
+    model::ClusterTree whole = coefficients::whole_patch_elements(patches, tree);
+    auto elements = geometry::element_shapes(patches, whole, 0, 0);
+    visibility::Occluders occluders(visibility::bodies_of(patches, tree, scene));
+    const auto poses = geometry::object_poses(scene, scene.time.time_of_frame(frame));
+    occluders.set_poses(poses);
+    for (geometry::ElementShape& element : elements)
+        element = geometry::moved(element, poses[element.object.value]);
+    return {std::move(scene), std::move(patches), std::move(whole), std::move(elements),
+            std::move(occluders)};
+}
+
+std::vector<double> group_areas(const Surfaces& surfaces, const Groups& groups) {
+    std::vector<double> areas(groups.names.size(), 0.0);
+    for (std::size_t e = 0; e < surfaces.elements.size(); ++e)
+        areas[groups.group_of[e]] += surfaces.elements[e].area;
+    return areas;
+}
+
+void write_csv(const std::filesystem::path& file, const Groups& groups, std::span<const double> areas,
                const std::vector<coefficients::FormFactor>& factors) {
-    std::string text = "from,to,form_factor,error_estimate\n";
+    std::string text = "from,to,form_factor,error_estimate,from_area_m2,to_area_m2\n";
     for (const coefficients::FormFactor& factor : factors)
-        text += fmt::format("{},{},{:.9g},{:.3g}\n", cli::csv_field(groups.names[factor.from]),
-                            cli::csv_field(groups.names[factor.to]), factor.value, factor.error_estimate);
+        text +=
+            fmt::format("{},{},{:.12g},{:.3g},{:.12g},{:.12g}\n", cli::csv_field(groups.names[factor.from]),
+                        cli::csv_field(groups.names[factor.to]), factor.value, factor.error_estimate,
+                        areas[factor.from], areas[factor.to]);
     core::write_whole_file(file, text);
+}
+
+void print_sums(const std::string& kind, const Groups& groups, std::span<const double> areas,
+                std::span<const coefficients::FormFactor> factors) {
+    std::vector<double> errors(groups.names.size(), 0.0);
+    for (const coefficients::FormFactor& factor : factors) errors[factor.from] += factor.error_estimate;
+    const std::vector<double> sums = row_sums(factors, groups.names.size());
+    cli::TextTable table({kind, "area m2", "row sum", "error estimate", "leaves the scene"});
+    bool open = false;
+    for (std::size_t g = 0; g < sums.size(); ++g) {
+        if (!(areas[g] > 0.0)) continue;
+        // What is missing beyond the errors goes where the scene has no surface.
+        const bool missing = 1.0 - sums[g] > std::max(errors[g], default_accuracy);
+        open = open || missing;
+        table.row({groups.names[g], fmt::format("{:.6g}", areas[g]), fmt::format("{:.9f}", sums[g]),
+                   fmt::format("{:.1e}", errors[g]), missing ? fmt::format("{:.6f}", 1.0 - sums[g]) : "-"});
+    }
+    fmt::print("{}  Sums are as computed, never normalised: 1 where a scene is closed.\n", table.text());
+    if (open)
+        fmt::print(
+            "  The scene is open: what leaves it reaches nothing; for balances add surroundings with these "
+            "factors, F(g, surroundings) = 1 - row sum.\n");
 }
 
 } // namespace
@@ -29,8 +95,18 @@ void write_csv(const std::filesystem::path& file, const Groups& groups,
 int form_factors_command(const std::vector<std::string>& arguments) {
     cli::RunTable run(
         "kinelux form-factors",
-        "Form factors between objects: the share of what leaves one uniformly that reaches the other.",
-        "scene, mesh, or folder of a case that has its coefficients");
+        "Form factors between objects: the share of what leaves one uniformly that reaches the other. Planar "
+        "patches "
+        "are taken whole; where nothing stands between, their factors are exact. The CSV has the columns "
+        "from, to, "
+        "form_factor, error_estimate, from_area_m2, to_area_m2. Row sums are printed as computed, never "
+        "normalised. "
+        "A scene is brought up to its clusters first, in its case; of a folder only what is there is read.",
+        "scene, mesh, or folder of a case that has its clusters",
+        {.help = "relative error of a form factor with nothing or few polygons in between, as 0.1% or 0.001",
+         .low = 1e-9,
+         .high = 0.1,
+         .unset = "0.1%"});
     std::filesystem::path csv;
     bool patches = false;
     std::uint32_t frame = 0;
@@ -44,24 +120,22 @@ int form_factors_command(const std::vector<std::string>& arguments) {
     std::filesystem::path folder = run.argument();
     if (!std::filesystem::is_directory(folder)) {
         folder = run.case_path();
-        if (const int code = run.run_until("coefficients"); code != 0) return code;
+        if (const int code = run.run_until("cluster"); code != 0) return code;
     }
-    const io::CaseFolder opened(folder);
-    LightCase light = read_light_case(opened);
-    if (frame >= light.scene.time.frames)
-        throw core::OptionError(
-            fmt::format("--frame {}: the scene has frames 0 to {}", frame, light.scene.time.frames - 1));
-    const auto blocks = coefficients_at(opened.read_coefficients(), light, frame, run.seed());
-    const Groups groups = groups_of(light, patches ? GroupBy::Patch : GroupBy::Object);
-    const auto factors = coefficients::form_factors(blocks, light.elements, groups.group_of,
-                                                    static_cast<std::uint32_t>(groups.names.size()));
-    if (!csv.empty()) write_csv(csv, groups, factors);
-
-    cli::TextTable table({patches ? "patch" : "object", "row sum"});
-    const std::vector<double> sums = row_sums(factors, groups.names.size());
-    for (std::size_t g = 0; g < sums.size(); ++g)
-        table.row({groups.names[g], fmt::format("{:.6f}", sums[g])});
-    fmt::print("{}  Sums are as computed, never normalised: 1 where a scene is closed.\n", table.text());
+    const Surfaces surfaces = read_surfaces(io::CaseFolder(folder), frame);
+    const Groups groups = groups_of(surfaces.scene, surfaces.patches, surfaces.tree,
+                                    patches ? GroupBy::Patch : GroupBy::Object);
+    const double accuracy = run.accuracy().value_or(default_accuracy);
+    const auto factors =
+        coefficients::whole_patch_factors(surfaces.elements, surfaces.occluders,
+                                          {.tolerance = accuracy,
+                                           .sight_tolerance = accuracy,
+                                           .most_blockers = most_blockers,
+                                           .seed = run.seed()},
+                                          groups.group_of, static_cast<std::uint32_t>(groups.names.size()));
+    const std::vector<double> areas = group_areas(surfaces, groups);
+    if (!csv.empty()) write_csv(csv, groups, areas, factors);
+    print_sums(patches ? "patch" : "object", groups, areas, factors);
     return 0;
 }
 

@@ -47,22 +47,27 @@ std::vector<std::uint32_t> frames_of(const model::Scene& scene, const std::optio
 }
 
 Groups groups_of(const LightCase& light, GroupBy by) {
+    return groups_of(light.scene, light.patches, light.tree, by);
+}
+
+Groups groups_of(const model::Scene& scene, const model::PatchSet& patches, const model::ClusterTree& tree,
+                 GroupBy by) {
     Groups groups;
     if (by == GroupBy::Object)
-        for (const model::Object& object : light.scene.objects) groups.names.push_back(object.name);
+        for (const model::Object& object : scene.objects) groups.names.push_back(object.name);
     else {
-        for (std::size_t p = 0; p < light.patches.patches.size(); ++p)
+        for (std::size_t p = 0; p < patches.patches.size(); ++p)
             groups.names.push_back(fmt::format("patch {}", p));
-        for (std::size_t c = 0; c < light.tree.clusters.size(); ++c)
+        for (std::size_t c = 0; c < tree.clusters.size(); ++c)
             groups.names.push_back(fmt::format("cluster {}", c));
     }
-    for (const model::Element& element : light.tree.elements) {
+    for (const model::Element& element : tree.elements) {
         if (by == GroupBy::Object)
             groups.group_of.push_back(element.object.value);
         else if (element.patch)
             groups.group_of.push_back(element.patch->value);
         else
-            groups.group_of.push_back(static_cast<std::uint32_t>(light.patches.patches.size()) +
+            groups.group_of.push_back(static_cast<std::uint32_t>(patches.patches.size()) +
                                       element.cluster->value);
     }
     return groups;

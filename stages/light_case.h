@@ -44,6 +44,8 @@ struct Groups {
     std::vector<std::uint32_t> group_of; ///< one per element
 };
 enum class GroupBy : std::uint8_t { Object, Patch };
+Groups groups_of(const model::Scene& scene, const model::PatchSet& patches, const model::ClusterTree& tree,
+                 GroupBy by);
 Groups groups_of(const LightCase& light, GroupBy by);
 
 /// Sum of the form factors from each group, as they are; 1 in a closed scene.

@@ -57,9 +57,15 @@ double number_in(const fs::path& record, std::string_view key) {
 } // namespace
 
 RunTable::RunTable(const std::string& program, const std::string& summary, const std::string& argument_help)
-    : options_(program, summary) {
+    : RunTable(program, summary, argument_help, AccuracyRow{}) {
+    stages_take_accuracy_ = true;
+}
+
+RunTable::RunTable(const std::string& program, const std::string& summary, const std::string& argument_help,
+                   const AccuracyRow& accuracy_row)
+    : options_(program, summary), stages_take_accuracy_(false) {
     options_.add({.member = &argument_, .flags = "SCENE", .help = argument_help});
-    overrides_.emplace(options_);
+    overrides_.emplace(options_, accuracy_row);
     options_.add({.member = &frames_,
                   .flags = "--frames",
                   .help = "first and last frame that are solved and exported",
@@ -78,6 +84,10 @@ RunTable::RunTable(const std::string& program, const std::string& summary, const
 
 fs::path RunTable::case_path() const { return overrides_->case_path(argument_); }
 
+std::optional<double> RunTable::accuracy() const {
+    return overrides_->accuracy ? std::optional(overrides_->accuracy->value) : std::nullopt;
+}
+
 void RunTable::apply() const { apply_common_options(threads_, quiet_, verbose_, log_file_); }
 
 std::vector<std::string> RunTable::stage_arguments(const std::string& stage) const {
@@ -92,7 +102,8 @@ std::vector<std::string> RunTable::stage_arguments(const std::string& stage) con
     std::vector<const char*> passed{"threads", "quiet", "verbose", "log-file"};
     passed.insert(passed.end(), call->options.begin(), call->options.end());
     for (const char* name : passed)
-        for (std::string& word : options_.given(name)) arguments.push_back(std::move(word));
+        if (stages_take_accuracy_ || std::string_view(name) != "accuracy")
+            for (std::string& word : options_.given(name)) arguments.push_back(std::move(word));
     return arguments;
 }
 

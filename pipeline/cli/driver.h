@@ -18,10 +18,14 @@ namespace kinelux::cli {
 class RunTable {
 public:
     RunTable(const std::string& program, const std::string& summary, const std::string& argument_help);
+    /// With an accuracy of the command's own, that the stages are not given.
+    RunTable(const std::string& program, const std::string& summary, const std::string& argument_help,
+             const AccuracyRow& accuracy_row);
 
     OptionTable& options() { return options_; }
     const std::filesystem::path& argument() const { return argument_; }
     std::uint64_t seed() const { return seed_; }
+    std::optional<double> accuracy() const;  ///< as given [1]
     std::filesystem::path case_path() const; ///< --output, or <scene stem>.case
     void apply() const;                      ///< log and threads
 
@@ -42,6 +46,7 @@ private:
     std::optional<double> memory_limit_;
     std::optional<FrameRange> frames_;
     std::uint64_t threads_ = 0, seed_ = 1;
+    bool stages_take_accuracy_ = true;
     bool force_ = false, quiet_ = false, verbose_ = false;
 };
 

@@ -3,7 +3,7 @@
 
 namespace kinelux::cli {
 
-SceneOverrides::SceneOverrides(OptionTable& table) {
+SceneOverrides::SceneOverrides(OptionTable& table, const AccuracyRow& accuracy_row) {
     table.add({.member = &output,
                .flags = "-o,--output",
                .help = "folder of the case",
@@ -11,10 +11,10 @@ SceneOverrides::SceneOverrides(OptionTable& table) {
                .decides = Decides::Manners});
     table.add({.member = &accuracy,
                .flags = "--accuracy",
-               .help = "relative error of radiosity asked for, as 1% or 0.01",
-               .low = 1e-6,
-               .high = 0.5,
-               .unset = "what the scene says, else 3%"});
+               .help = accuracy_row.help,
+               .low = accuracy_row.low,
+               .high = accuracy_row.high,
+               .unset = accuracy_row.unset});
     table.add({.member = &degree,
                .flags = "--degree",
                .help = "of the polynomial bases",

@@ -3,11 +3,19 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "cli/option_table.h"
 #include "model/scene.h"
 
 namespace kinelux::cli {
+
+/// What --accuracy means to a program, its range and what holds when it is not given.
+struct AccuracyRow {
+    std::string help = "relative error of radiosity asked for, as 1% or 0.01";
+    double low = 1e-6, high = 0.5; ///< [1]
+    std::string unset = "what the scene says, else 3%";
+};
 
 /// The options of a program that reads a scene: where the case is, and what the command line knows better than the
 /// scene file. Must outlive the table.
@@ -18,7 +26,7 @@ struct SceneOverrides {
     std::optional<double> element_size; ///< [m]
     bool allow_outside = false;
 
-    explicit SceneOverrides(OptionTable& table);
+    explicit SceneOverrides(OptionTable& table, const AccuracyRow& accuracy_row = {});
 
     /// --output, or <scene stem>.case in the current folder.
     std::filesystem::path case_path(const std::filesystem::path& scene) const;

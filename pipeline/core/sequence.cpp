@@ -26,6 +26,28 @@ std::uint32_t sobol_second(std::uint32_t index) {
     return result;
 }
 
+// Direction numbers of one dimension by Sobol's recurrence of a primitive polynomial over the integers modulo 2, whose
+// inner coefficients are the bits of `inner`, from the first odd numbers m.
+template <std::size_t degree>
+std::array<std::uint32_t, 32> direction_numbers(const std::array<std::uint32_t, degree>& m,
+                                                std::uint32_t inner) {
+    std::array<std::uint32_t, 32> v{};
+    for (std::size_t k = 0; k < degree; ++k) v[k] = m[k] << (31 - k);
+    for (std::size_t k = degree; k < 32; ++k) {
+        v[k] = v[k - degree] ^ (v[k - degree] >> degree);
+        for (std::size_t i = 1; i < degree; ++i)
+            if ((inner >> (degree - 1 - i)) & 1u) v[k] ^= v[k - i];
+    }
+    return v;
+}
+
+std::uint32_t sobol_by(const std::array<std::uint32_t, 32>& directions, std::uint32_t index) {
+    std::uint32_t result = 0;
+    for (std::size_t k = 0; index != 0; index >>= 1, ++k)
+        if (index & 1u) result ^= directions[k];
+    return result;
+}
+
 // A hash in which each bit depends on lower bits only: applied to reversed bits it is a nested uniform scramble.
 std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
     x += seed;
@@ -55,6 +77,16 @@ Vec2 sobol_2d(std::uint32_t index, std::uint64_t seed) {
     const auto x = owen_scramble(reverse_bits(shuffled), static_cast<std::uint32_t>(seeds));
     const auto y = owen_scramble(sobol_second(shuffled), static_cast<std::uint32_t>(seeds >> 32));
     return {x * two_to_minus_32, y * two_to_minus_32};
+}
+
+std::array<double, 4> sobol_4d(std::uint32_t index, std::uint64_t seed) {
+    static const auto third = direction_numbers<2>({1, 3}, 1), fourth = direction_numbers<3>({1, 3, 1}, 1);
+    const Vec2 first = sobol_2d(index, seed);
+    const std::uint64_t seeds = mix(seed, 2);
+    const auto shuffled = owen_scramble(index, static_cast<std::uint32_t>(mix(seed, 1)));
+    const auto z = owen_scramble(sobol_by(third, shuffled), static_cast<std::uint32_t>(seeds));
+    const auto w = owen_scramble(sobol_by(fourth, shuffled), static_cast<std::uint32_t>(seeds >> 32));
+    return {first.x, first.y, z * two_to_minus_32, w * two_to_minus_32};
 }
 
 double Random::next() { return static_cast<double>(mix(seed_, counter_++) >> 11) * two_to_minus_53; }

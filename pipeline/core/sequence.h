@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/vec.h"
@@ -14,6 +15,11 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b);
 /// Point `index` of the first two dimensions of Sobol's sequence, Owen-scrambled by hashing with `seed`; in [0,1)^2.
 /// @cite Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020
 Vec2 sobol_2d(std::uint32_t index, std::uint64_t seed);
+
+/// The same of the first four dimensions; in [0,1)^4. The first two are those of sobol_2d with the same seed.
+/// @cite direction numbers: Joe and Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM J.
+/// Sci. Comput. 30 (2008), new-joe-kuo-6
+std::array<double, 4> sobol_4d(std::uint32_t index, std::uint64_t seed);
 
 /// Uniform random numbers in [0,1): a counter hashed with a seed.
 class Random {

@@ -307,7 +307,7 @@ class FormFactorsAndInfo(StageTest):
         self.assertIn("row sum", done.stdout)
         with (self.folder / "f.csv").open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(list(rows[0]), ["from", "to", "form_factor", "error_estimate"])
+        self.assertEqual(list(rows[0]), ["from", "to", "form_factor", "error_estimate", "from_area_m2", "to_area_m2"])
         for name in ("room", "block", "lamp"):
             total = sum(float(row["form_factor"]) for row in rows if row["from"] == name)
             self.assertAlmostEqual(total, 1.0, delta=0.03, msg=name)

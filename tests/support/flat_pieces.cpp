@@ -37,7 +37,7 @@ bool shares_side(const geometry::Facet& facet, const Vec3& from, const Vec3& to)
 FlatPiece piece_of(std::span<const geometry::Facet> facets) {
     const auto largest =
         std::max_element(facets.begin(), facets.end(), [](auto& a, auto& b) { return a.area < b.area; });
-    FlatPiece piece{plane_of(*largest), {}, {}};
+    FlatPiece piece{plane_of(*largest), {}, {}, {}};
     for (const geometry::Facet& facet : facets) {
         Polygon polygon;
         for (const Vec3& corner : facet.corners) polygon.push_back(piece.plane.local(corner));
@@ -96,17 +96,30 @@ double diameter(std::span<const Vec2> polygon) {
 }
 
 std::vector<FlatPiece> flat_pieces(const geometry::ElementShape& shape) {
-    if (shape.planar) return {piece_of(shape.facets)};
+    if (shape.planar) {
+        FlatPiece piece = piece_of(shape.facets);
+        for (const std::vector<Vec3>& loop : shape.outline) {
+            piece.loops.emplace_back();
+            for (const Vec3& corner : loop) piece.loops.back().push_back(piece.plane.local(corner));
+        }
+        return {std::move(piece)};
+    }
     std::vector<FlatPiece> pieces;
-    for (const geometry::Facet& facet : shape.facets) pieces.push_back(piece_of(std::span(&facet, 1)));
+    for (const geometry::Facet& facet : shape.facets) {
+        pieces.push_back(piece_of(std::span(&facet, 1)));
+        pieces.back().loops = pieces.back().parts;
+    }
     return pieces;
 }
 
 FlatPiece in_front(const FlatPiece& piece, const Plane& plane) {
     const HeightFunction height(piece, plane);
-    FlatPiece front{piece.plane, {}, {}};
+    FlatPiece front{piece.plane, {}, {}, {}};
     for (const Polygon& part : piece.parts)
         if (Polygon kept = clipped(part, height); !kept.empty()) front.parts.push_back(std::move(kept));
+    // A loop that the plane parts stays joined along it, there and back: its contour integrals cancel there.
+    for (const Polygon& loop : piece.loops)
+        if (Polygon kept = clipped(loop, height); !kept.empty()) front.loops.push_back(std::move(kept));
     for (const Line& side : piece.outline) {
         const double h0 = height(side.from), h1 = height(side.to);
         if (std::max(h0, h1) < 0.0) continue;

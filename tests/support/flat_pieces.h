@@ -29,7 +29,8 @@ struct Plane {
 /// The facets of an element that lie in one plane.
 struct FlatPiece {
     Plane plane;
-    std::vector<Polygon> parts; ///< do not overlap
+    std::vector<Polygon> parts; ///< convex, do not overlap
+    std::vector<Polygon> loops; ///< boundary of all parts together, holes clockwise
     std::vector<Line> outline;  ///< sides that belong to one facet only
 };
 

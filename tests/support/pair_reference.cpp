@@ -17,9 +17,13 @@ using geometry::ElementShape;
 constexpr int outer_nodes = 8;     ///< per direction of a cell, at degree 0
 constexpr double near_side = 0.25; ///< of the outer piece's size: a side as near cuts it
 constexpr double vanishing_side =
-    1e-4;                       ///< projected / real length of a side that is perpendicular to the piece
-constexpr double grading = 0.2; ///< where a cell at the border of its triangle is cut
-constexpr int most_cuts = 60;   ///< of one cell into ever smaller ones
+    1e-4;                           ///< projected / real length of a side that is perpendicular to the piece
+constexpr double close_side = 0.02; ///< of a side's length
+constexpr double grading = 0.2;     ///< where a cell at the border of its triangle is cut
+constexpr double negligible_block = 1e-6; ///< a smaller block is right to a share of this
+constexpr double light_cell = 10.0;       ///< in tolerances of a cell
+constexpr int most_cells = 400;           ///< of one triangle: beyond it the disagreement says what is left
+constexpr int most_cuts = 60;             ///< of one cell into ever smaller ones
 
 double norm_of(std::span<const double> values) {
     double sum = 0.0;
@@ -30,6 +34,7 @@ double norm_of(std::span<const double> values) {
 // A triangle over a side of a piece of a, in the coordinates (s, t): s from the side (0) to the apex (1), t along it.
 struct OuterTriangle {
     Vec2 from, to, apex;
+    bool at_side; ///< a side of b runs close to this one
 };
 
 struct Cell {
@@ -62,6 +67,22 @@ std::vector<Line> cutting_lines(const FlatPiece& a, const FlatPiece& b, const Po
     return lines;
 }
 
+double distance_to_side(const Vec3& x, const Vec3& from, const Vec3& to) {
+    const Vec3 side = to - from;
+    const double length2 = glm::dot(side, side);
+    const double t = length2 > 0.0 ? std::clamp(glm::dot(x - from, side) / length2, 0.0, 1.0) : 0.0;
+    return glm::distance(x, from + t * side);
+}
+
+// Whether a line of a's plane has its middle so close to a side of b that a step may run along it.
+bool runs_at_side(const FlatPiece& a, const FlatPiece& b, const Vec2& from, const Vec2& to) {
+    const Vec3 middle = a.plane.point(0.5 * (from + to));
+    return std::any_of(b.outline.begin(), b.outline.end(), [&](const Line& side) {
+        return distance_to_side(middle, b.plane.point(side.from), b.plane.point(side.to)) <
+               close_side * glm::distance(from, to);
+    });
+}
+
 std::vector<Polygon> outer_parts(const FlatPiece& a, const FlatPiece& b) {
     std::vector<Polygon> result;
     for (const Polygon& whole : a.parts) {
@@ -88,7 +109,7 @@ public:
           inner_(piece_b, b.basis),
           tolerance_(tolerance),
           rule_(geometry::gauss_rule(outer_nodes + a.basis.degree() / 2)) {
-        for (const Polygon& part : outer_parts(piece_a, piece_b)) add_triangles(part);
+        for (const Polygon& part : outer_parts(piece_a, piece_b)) add_triangles(part, piece_b);
         const std::size_t n = rule_.nodes.size();
         for (std::size_t i = 0; i < n; ++i) {
             // The Legendre polynomial of degree n - 1 on [0, 1], by its recurrence.
@@ -113,6 +134,7 @@ public:
         size_ = norm_of(rough);
         for (std::size_t t = 0; t < triangles_.size(); ++t) {
             triangle_ = triangles_[t];
+            cells_ = 0;
             refine({0.0, 1.0, 0.0, 1.0}, roots[t], 0, sums);
             size_ = std::max(size_, norm_of(sums));
         }
@@ -124,11 +146,13 @@ private:
         double unrest_s, unrest_t; ///< top Legendre coefficients of the inner integral in both directions
     };
 
-    void add_triangles(const Polygon& part) {
+    void add_triangles(const Polygon& part, const FlatPiece& piece_b) {
         Vec2 centre(0.0);
         for (const Vec2& p : part) centre += p / static_cast<double>(part.size());
-        for (std::size_t i = 0; i < part.size(); ++i)
-            triangles_.push_back({part[i], part[(i + 1) % part.size()], centre});
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const Vec2 &from = part[i], &to = part[(i + 1) % part.size()];
+            triangles_.push_back({from, to, centre, runs_at_side(piece_, piece_b, from, to)});
+        }
     }
 
     Value value_of(const Cell& cell) {
@@ -176,24 +200,51 @@ private:
         return 0.5 * (low + high);
     }
 
+    // What a cell could add to the block's constant term if all that leaves it reached b.
+    double largest_value(const Cell& cell) const {
+        const double twice_area =
+            std::abs(cross(triangle_.to - triangle_.from, triangle_.apex - triangle_.from));
+        return twice_area * (cell.s1 - cell.s0) * (cell.t1 - cell.t0) / std::sqrt(a_.area * b_.area);
+    }
+
+    enum class Along : std::uint8_t { S, T };
+    struct Halves {
+        Cell first, second;
+        Value a, b;
+        double change; ///< of the cell's value by cutting it
+    };
+
+    Halves cut_along(Along direction, const Cell& cell, const Value& whole) {
+        Halves halves{cell, cell, {}, {}, 0.0};
+        // Towards the apex all is smooth: only the side is graded.
+        if (direction == Along::S)
+            halves.first.s1 = halves.second.s0 =
+                cell.s0 == 0.0 ? grading * cell.s1 : 0.5 * (cell.s0 + cell.s1);
+        else
+            halves.first.t1 = halves.second.t0 = cut_of(cell.t0, cell.t1);
+        halves.a = value_of(halves.first);
+        halves.b = value_of(halves.second);
+        for (std::size_t k = 0; k < whole.block.size(); ++k)
+            halves.change = std::hypot(halves.change, halves.a.block[k] + halves.b.block[k] - whole.block[k]);
+        return halves;
+    }
+
+    // Cuts a cell where it is least smooth until neither cut changes its value.
     void refine(const Cell& cell, const Value& whole, int cuts, std::vector<double>& sums) {
-        Cell first = cell, second = cell;
-        if (whole.unrest_s >= whole.unrest_t) {
-            // The function is smooth towards the apex: only the side is graded.
-            first.s1 = second.s0 = cell.s0 == 0.0 ? grading * cell.s1 : 0.5 * (cell.s0 + cell.s1);
-        } else {
-            first.t1 = second.t0 = cut_of(cell.t0, cell.t1);
-        }
-        const Value a = value_of(first), b = value_of(second);
-        double change = 0.0;
-        for (std::size_t k = 0; k < sums.size(); ++k)
-            change = std::hypot(change, a.block[k] + b.block[k] - whole.block[k]);
-        if (change <= tolerance_ * size_ || cuts >= most_cuts) {
-            for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += a.block[k] + b.block[k];
+        const double enough = tolerance_ * std::max(size_, negligible_block);
+        const Along first = whole.unrest_s >= whole.unrest_t ? Along::S : Along::T;
+        // A step as narrow as a gap may hide below the first node: a cell at the side is cut until it is light.
+        const bool hiding = triangle_.at_side && cell.s0 == 0.0 && largest_value(cell) > light_cell * enough;
+        cells_ += 2;
+        Halves halves = cut_along(hiding ? Along::S : first, cell, whole);
+        if (!hiding && halves.change <= enough)
+            halves = cut_along(first == Along::S ? Along::T : Along::S, cell, whole);
+        if ((!hiding && halves.change <= enough) || cuts >= most_cuts || cells_ >= most_cells) {
+            for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += halves.a.block[k] + halves.b.block[k];
             return;
         }
-        refine(first, a, cuts + 1, sums);
-        refine(second, b, cuts + 1, sums);
+        refine(halves.first, halves.a, cuts + 1, sums);
+        refine(halves.second, halves.b, cuts + 1, sums);
     }
 
     const ElementShape& a_;
@@ -206,6 +257,7 @@ private:
     std::vector<OuterTriangle> triangles_;
     OuterTriangle triangle_{};
     double size_ = 0.0;
+    int cells_ = 0; ///< of the triangle at hand
 };
 
 std::vector<double> from_the_side_of(const ElementShape& a, const ElementShape& b, double tolerance) {

@@ -19,9 +19,9 @@ struct PairReference {
 /// adaptive over pieces cut along the other element's projected sides; the inner one is polar about the foot of the
 /// outer point, closed along the radius, by Gauss in asinh(u / distance) along each side, or a Gauss product far away.
 /// Computed twice, once with the roles exchanged: the difference is the error that can be seen from outside.
-/// @param tolerance  of one outer cell, relative to the block's norm, 1e-12..1e-2
+/// @param tolerance  of one outer cell, relative to the block's norm or 1e-6, the larger, 1e-12..1e-2
 PairReference pair_reference(const geometry::ElementShape& a, const geometry::ElementShape& b,
-                             double tolerance = 1e-9);
+                             double tolerance = 1e-8);
 
 /// integral over b of phi_l(y) cos+ cos'+ / (pi r^2) dA at a point that faces `normal`, for all l; all of b in front.
 /// @param x  [m] @param normal  unit

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Dense>
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double far_ratio = 1.0; ///< distance / longest side from which the Gauss product is exact to 1e-10
 constexpr double compact_ratio = 10.;   ///< longest side^2 / area of a triangle fit for polar integration
+constexpr double hollow_ratio = 60.0;   ///< size^2 / area of a piece with holes that is taken whole
 constexpr double smallest_part = 1e-12; ///< of the piece: a part as small is never bisected
 constexpr int gauss_nodes = 9;          ///< per direction of the far product at degree 0
 constexpr int side_nodes = 11;          ///< per panel of a side at degree 0
@@ -120,6 +122,19 @@ PointIntegral::PointIntegral(const FlatPiece& piece, const geometry::Basis& basi
             if (Part part = make_part({polygon[0], polygon[i - 1], polygon[i]}); part.area > 0.0)
                 parts_.push_back(std::move(part));
     roots_ = parts_.size();
+    Vec2 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Polygon& loop : piece.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            sides_.push_back({loop[i], loop[(i + 1) % loop.size()]});
+            low = glm::min(low, loop[i]);
+            high = glm::max(high, loop[i]);
+        }
+    size_ = glm::distance(low, high);
+    // Bounds along one side of the piece: of a long one they are thin, or it lies across and is bisected.
+    const double area = std::accumulate(parts_.begin(), parts_.end(), 0.0,
+                                        [](double sum, const Part& part) { return sum + part.area; });
+    const bool thin = std::min(high.x - low.x, high.y - low.y) * compact_ratio < size_;
+    if (thin || area * hollow_ratio < size_ * size_) sides_.clear();
 }
 
 PointIntegral::Part PointIntegral::make_part(const std::array<Vec2, 3>& corners) {
@@ -137,7 +152,18 @@ void PointIntegral::add(const Vec3& x, const Vec3& normal, std::span<double> sum
                             {glm::dot(normal, plane_.axis_u), glm::dot(normal, plane_.axis_v)},
                             sums};
     if (!(receiver.height > 0.0)) return;
+    if (!sides_.empty() && distance_to_parts(receiver) <= far_ratio * size_) {
+        add_polar(receiver, sides_);
+        return;
+    }
     for (std::size_t root = 0; root < roots_; ++root) add_part(receiver, root);
+}
+
+double PointIntegral::distance_to_parts(const Receiver& receiver) const {
+    double distance = std::numeric_limits<double>::infinity();
+    for (std::size_t root = 0; root < roots_; ++root)
+        distance = std::min(distance, distance_to_triangle(receiver.foot, parts_[root].corners));
+    return std::hypot(receiver.height, distance);
 }
 
 void PointIntegral::add_part(const Receiver& receiver, std::size_t index) {
@@ -147,7 +173,8 @@ void PointIntegral::add_part(const Receiver& receiver, std::size_t index) {
         add_gauss(receiver, part);
     } else if (part.size * part.size < compact_ratio * part.area ||
                part.size < smallest_part * parts_[0].size) {
-        add_polar(receiver, part);
+        const auto& c = part.corners;
+        add_polar(receiver, std::array{Line{c[0], c[1]}, Line{c[1], c[2]}, Line{c[2], c[0]}});
     } else {
         if (part.first_child == 0) bisect(index);
         const std::size_t child = parts_[index].first_child;
@@ -196,17 +223,17 @@ void PointIntegral::add_gauss(const Receiver& receiver, Part& part) const {
     }
 }
 
-void PointIntegral::add_polar(const Receiver& receiver, const Part& part) const {
+void PointIntegral::add_polar(const Receiver& receiver, std::span<const Line> sides) const {
     const int degree = basis_.degree();
     const std::size_t size = basis_.size();
     const double h = receiver.height;
     double reach = 0.0;
-    for (const Vec2& corner : part.corners) reach = std::max(reach, glm::distance(corner, receiver.foot));
+    for (const Line& line : sides) reach = std::max(reach, glm::distance(line.from, receiver.foot));
     Eigen::VectorXd monomials = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size));
     const auto& rule = geometry::gauss_rule(side_nodes + degree / 2);
-    for (std::size_t c = 0; c < 3; ++c) {
-        const Vec2 from = part.corners[c] - receiver.foot;
-        const Vec2 side = part.corners[(c + 1) % 3] - part.corners[c];
+    for (const Line& line : sides) {
+        const Vec2 from = line.from - receiver.foot, side = line.to - line.from;
+        if (side == Vec2(0.0)) continue;
         const Vec2 e = glm::normalize(side);
         const double d = cross(from, e), u0 = glm::dot(from, e), u1 = u0 + glm::length(side);
         if (d == 0.0) continue;
@@ -216,10 +243,12 @@ void PointIntegral::add_polar(const Receiver& receiver, const Part& part) const 
         for (int panel = 0; panel < panels; ++panel)
             for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
                 const double v = v0 + (v1 - v0) * (panel + rule.nodes[i]) / panels;
-                const Vec2 y = base + g * std::sinh(v) * e;
+                const double growth = std::exp(v); // sinh and cosh share it
+                const Vec2 y = base + 0.5 * g * (growth - 1.0 / growth) * e;
                 const double radius2 = glm::dot(y, y);
                 const Moments j = radial_moments(h / std::sqrt(radius2), degree + 2);
-                const double weight = rule.weights[i] * (v1 - v0) / panels * g * std::cosh(v) * d * h /
+                const double weight = rule.weights[i] * (v1 - v0) / panels * 0.5 * g *
+                                      (growth + 1.0 / growth) * d * h /
                                       (std::numbers::pi * radius2 * radius2);
                 const double normal_part = h * receiver.facing, slope_part = glm::dot(receiver.slope, y);
                 for_monomials(degree, y / reach, [&](std::size_t k, std::size_t m, double value) {

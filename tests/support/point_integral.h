@@ -9,9 +9,10 @@
 
 namespace kinelux::support {
 
-/// integral over a flat piece of phi_l(y) cos cos' / (pi r^2) dA for all l at once, at any point in front of it. The
-/// piece is bisected until a part is either far from the point, for a Gauss product, or compact, for polar integration
-/// about the foot of the point: closed along the radius, Gauss in asinh(u / distance to the side) along each side.
+/// integral over a flat piece of phi_l(y) cos cos' / (pi r^2) dA for all l at once, at any point in front of it: by
+/// Gauss products where the point is far, else by polar integration about its foot, closed along the radius, Gauss in
+/// asinh(u / distance to the side) along each side. A compact piece is taken whole, along its loops; a long one is
+/// bisected until each part is far or compact.
 class PointIntegral {
 public:
     PointIntegral(const FlatPiece& piece, const geometry::Basis& basis);
@@ -43,13 +44,16 @@ private:
     void add_part(const Receiver& receiver, std::size_t index);
     void bisect(std::size_t index);
     void add_gauss(const Receiver& receiver, Part& part) const;
-    void add_polar(const Receiver& receiver, const Part& part) const;
+    void add_polar(const Receiver& receiver, std::span<const Line> sides) const;
+    double distance_to_parts(const Receiver& receiver) const;
     void fill_nodes(Part& part) const;
 
     Plane plane_;
     const geometry::Basis& basis_;
     std::vector<Part> parts_;
     std::size_t roots_ = 0;
+    std::vector<Line> sides_; ///< of all loops; empty: the piece is not compact
+    double size_ = 0.0;       ///< of the piece [m]
 };
 
 } // namespace kinelux::support

@@ -27,8 +27,11 @@ struct Judgement {
     bool honest() const;
 };
 
-/// A reference of this accuracy or better can judge blocks of every tolerance down to 1e-6.
-constexpr double reference_accuracy = 1e-7;
+/// A reference that is off by less than this share of a tolerance can judge it.
+constexpr double judge_share = 0.3;
+
+/// A block as small is not asked to be right to a share of itself.
+constexpr double negligible_norm = 1e-6;
 
 /// @throws OptionError  no class of that name
 PairClass class_named(std::string_view name);

@@ -154,15 +154,27 @@ void place_hinged(Dice& dice, Layout& layout) {
     layout.what = fmt::format("angle {:.2f}", angle);
 }
 
+Vec2 middle(const Flat& flat) {
+    Vec2 sum(0.0);
+    for (const Vec2& p : flat.outline) sum += p / static_cast<double>(flat.outline.size());
+    return sum;
+}
+
+// One over the other: congruent, on a common edge line, or with both middles no further than `size` / 2 apart.
 void place_facing(Dice& dice, Layout& layout, double size) {
     const double gap = dice.decades(-9.0, -1.0) * size;
     const double turn = dice.below(3) == 0 ? 0.0 : dice.between(0.0, 2.0 * std::numbers::pi);
     const double tilt = dice.below(3) == 0 ? gap * dice.between(0.0, 0.5) : 0.0;
-    const Vec2 shift{dice.between(-0.5, 0.8), dice.between(-0.5, 0.8)};
     const double c = std::cos(turn), s = std::sin(turn);
-    const Vec2 at = dice.below(4) == 0 ? Vec2(0.0) : shift;
-    layout.frame_b = {Vec3(at, gap), Vec3(s, c, 0.0), Vec3(c, -s, tilt)};
-    layout.what = fmt::format("gap {:.2e} turn {:.2f} tilt {:.1e}", gap, turn, tilt);
+    layout.frame_b = {Vec3(0.0), Vec3(-c, s, 0.0), Vec3(s, c, tilt)};
+    const int place = dice.below(4);
+    if (place == 0) layout.b = mirrored(layout.a);
+    const Vec2 shift{dice.between(-0.5, 0.5), dice.between(-0.5, 0.5)};
+    const Vec2 centre_b(layout.frame_b(middle(layout.b)));
+    if (place != 0) layout.frame_b.origin = Vec3(middle(layout.a) - centre_b + size * shift, 0.0);
+    if (place == 1) layout.frame_b.origin.y = 0.0;
+    layout.frame_b.origin.z = gap;
+    layout.what = fmt::format("gap {:.2e} turn {:.2f} tilt {:.1e} place {}", gap, turn, tilt, place);
 }
 
 Layout hinge_layout(Dice& dice) {
