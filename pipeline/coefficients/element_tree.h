@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/element_shape.h"
+#include "model/coefficients.h"
+
+namespace kinelux::coefficients {
+
+/// An element, or a group of elements, as links see it.
+struct TreeNode {
+    std::uint32_t first = 0, second = 0; ///< child nodes; equal for an element
+    Vec3 box_low{0.0}, box_high{0.0};
+    Vec3 centre{0.0}; ///< of a ball that holds the balls of both children
+    double radius = 0.0;
+    Vec3 mean_normal{0.0};    ///< axis of the normal cone, unit
+    double cone_cosine = 1.0; ///< of the cone's half angle
+    double area = 0.0;        ///< [m2]
+    double power = 0.0;       ///< estimated integral of the squared radiosity, in any unit
+    /// A quadrature with positive weights exact to degree 2 in position (clusters: of a few spread nodes), and the
+    /// node's basis there: an element's own; of a group 1/sqrt(A) and up to three linear functions of position along
+    /// the principal axes of its area, orthonormal in area.
+    geometry::NodeSet rule;
+    std::size_t basis_size = 0;
+
+    bool is_element() const { return first == second; }
+};
+
+/// Binary tree over some elements.
+struct ElementTree {
+    std::vector<TreeNode> nodes; ///< all elements first, in order; then groups, children before parents
+    std::size_t root = 0;        ///< the last node; meaningless where no element is in the tree
+    model::Hierarchy hierarchy;  ///< layout, groups and restrictions; without links
+};
+
+/// Groups elements by normal first, until those of a group lie within about 60 degrees of each other, then by halves of
+/// the longest side of their centres' box.
+/// @param elements   in order of ElementId
+/// @param members    numbers of those in the tree, increasing
+/// @param radiosity  estimate per element, any unit
+ElementTree build_element_tree(std::span<const geometry::ElementShape> elements,
+                               std::span<const std::uint32_t> members, std::span<const double> radiosity);
+
+} // namespace kinelux::coefficients
