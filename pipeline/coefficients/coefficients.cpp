@@ -156,28 +156,6 @@ private:
     std::vector<std::uint32_t> riding_;
 };
 
-// Radiosity per element that is to be expected: its exitance, and what it reflects where light is spread evenly in a
-// closed scene. Without light all elements count alike.
-std::vector<double> expected_radiosity(std::span<const ElementShape> elements, const model::Scene& scene) {
-    const auto mean = [](const std::vector<double>& channels) {
-        return std::accumulate(channels.begin(), channels.end(), 0.0) / static_cast<double>(channels.size());
-    };
-    double area = 0.0, flux = 0.0, reflected = 0.0;
-    for (const ElementShape& element : elements) {
-        const model::Material& material = scene.materials[element.material.value];
-        area += element.area;
-        flux += element.area * mean(material.exitance);
-        reflected += element.area * mean(material.reflectance);
-    }
-    const double irradiance = flux / (area - reflected);
-    std::vector<double> radiosity(elements.size(), 1.0);
-    for (std::size_t e = 0; e < elements.size() && flux > 0.0; ++e) {
-        const model::Material& material = scene.materials[elements[e].material.value];
-        radiosity[e] = mean(material.exitance) + mean(material.reflectance) * irradiance;
-    }
-    return radiosity;
-}
-
 // Puts all pairs of elements at rest that may share a link into links; the builder keeps the others.
 void group_distant_pairs(std::span<const ElementShape> elements, const model::Scene& scene,
                          const visibility::Occluders& occluders, const kernel::TransportOptions& options,
@@ -186,9 +164,13 @@ void group_distant_pairs(std::span<const ElementShape> elements, const model::Sc
     for (std::size_t i = 0; i < elements.size(); ++i)
         if (!builder.rides(i)) members.push_back(static_cast<std::uint32_t>(i));
     if (members.size() < 2) return;
-    ElementTree tree = build_element_tree(elements, members, expected_radiosity(elements, scene));
+    bool moving_light = false;
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        moving_light = moving_light || (builder.rides(i) && scene.materials[elements[i].material.value].emits());
+    ElementTree tree = build_element_tree(elements, members);
     LinkedPairs pairs =
-        link_groups(tree, elements, occluders, options, {.tolerance = tolerance, .movers = builder.movers()});
+        link_groups(tree, elements, even_light(elements, scene), occluders, options,
+                    {.tolerance = tolerance, .movers = builder.movers(), .refine_light = !moving_light});
     result.hierarchy = std::move(tree.hierarchy);
     result.hierarchy.links = std::move(pairs.links);
     result.hierarchy.error_estimate = pairs.error_estimate;

@@ -90,7 +90,7 @@ NodeSet element_rule(const ElementShape& element) {
     return rule;
 }
 
-TreeNode node_of(const ElementShape& element, double radiosity) {
+TreeNode node_of(const ElementShape& element) {
     TreeNode node;
     node.box_low = element.box_low;
     node.box_high = element.box_high;
@@ -99,7 +99,6 @@ TreeNode node_of(const ElementShape& element, double radiosity) {
     node.mean_normal = element.mean_normal;
     node.cone_cosine = element.cone_cosine;
     node.area = element.area;
-    node.power = element.area * radiosity * radiosity;
     node.rule = element_rule(element);
     node.basis_size = element.basis.size();
     return node;
@@ -202,7 +201,6 @@ private:
         for (const TreeNode* child : {&a, &b})
             group.radius = std::max(group.radius, glm::distance(group.centre, child->centre) + child->radius);
         group.area = a.area + b.area;
-        group.power = a.power + b.power;
         join_cones(a, b, group);
         std::vector<SurfaceNode> all = a.rule.nodes;
         all.insert(all.end(), b.rule.nodes.begin(), b.rule.nodes.end());
@@ -278,12 +276,11 @@ model::Hierarchy hierarchy_of(const std::vector<TreeNode>& nodes, std::size_t el
 
 } // namespace
 
-ElementTree build_element_tree(std::span<const ElementShape> elements, std::span<const std::uint32_t> members,
-                               std::span<const double> radiosity) {
+ElementTree build_element_tree(std::span<const ElementShape> elements, std::span<const std::uint32_t> members) {
     ElementTree tree;
     tree.nodes.resize(elements.size());
     core::parallel_for(elements.size(),
-                       [&](std::size_t e) { tree.nodes[e] = node_of(elements[e], radiosity[e]); });
+                       [&](std::size_t e) { tree.nodes[e] = node_of(elements[e]); });
     tree.nodes.reserve(2 * elements.size());
     Builder(members, tree).build();
     tree.hierarchy = hierarchy_of(tree.nodes, elements.size());

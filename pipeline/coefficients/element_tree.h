@@ -20,7 +20,6 @@ struct TreeNode {
     Vec3 mean_normal{0.0};    ///< axis of the normal cone, unit
     double cone_cosine = 1.0; ///< of the cone's half angle
     double area = 0.0;        ///< [m2]
-    double power = 0.0;       ///< estimated integral of the squared radiosity, in any unit
     /// A quadrature with positive weights exact to degree 2 in position (clusters: of a few spread nodes), and the
     /// node's basis there: an element's own; of a group 1/sqrt(A) and up to three linear functions of position along
     /// the principal axes of its area, orthonormal in area.
@@ -39,10 +38,9 @@ struct ElementTree {
 
 /// Groups elements by normal first, until those of a group lie within about 60 degrees of each other, then by halves of
 /// the longest side of their centres' box.
-/// @param elements   in order of ElementId
-/// @param members    numbers of those in the tree, increasing
-/// @param radiosity  estimate per element, any unit
+/// @param elements  in order of ElementId
+/// @param members   numbers of those in the tree, increasing
 ElementTree build_element_tree(std::span<const geometry::ElementShape> elements,
-                               std::span<const std::uint32_t> members, std::span<const double> radiosity);
+                               std::span<const std::uint32_t> members);
 
 } // namespace kinelux::coefficients

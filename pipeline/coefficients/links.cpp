@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/parallel.h"
+#include "model/hierarchy.h"
 
 namespace kinelux::coefficients {
 
@@ -24,19 +26,33 @@ constexpr double least_eta = 0.5;
 // Error of a product of two rules of degree 2 relative to the block, at eta = 1; it falls with eta^2.
 constexpr double product_error = 0.02;
 
-// What radiosity has beyond its mean in a group, squared and relative to the mean squared, in linear functions or in
-// functions that no basis of the group holds.
-constexpr double variation = 0.1;
+// Share of the product of norms that two functions outside a group's basis, kernel and radiosity, have as their inner
+// product, squared: they are not alike.
+constexpr double likeness = 0.25;
 
 // Each round's limit of a single link's squared error, relative to the round before.
 constexpr double round_factor = 0.25;
 
+// The first links, from which the light is estimated, may be so much coarser.
+constexpr double coarse = 4.0;
+
+// Squared norms of what a constant, and what all linear functions of the other node send outside a node's basis [1].
+struct Residuals {
+    double of_constant = 0.0, of_others = 0.0;
+};
+
 struct Link {
     ElementPair nodes;
-    double error2 = 0.0;      ///< squared L2 error of irradiance, over both nodes
+    double common = 0.0;            ///< squared error of the block itself [1]
+    Residuals outside_i, outside_j; ///< what the kernel has outside the basis of i, of j
     float block_error = 0.0f; ///< Frobenius norm
     std::uint32_t rays = 0;
     std::vector<float> values; ///< empty: hidden
+};
+
+// The integral over a node of its squared radiosity: of its mean, of its linear part, of the rest.
+struct Power {
+    double constant = 0.0, linear = 0.0, rest = 0.0;
 };
 
 enum class Outcome : std::uint8_t { Nothing, Linked, Divide, Near };
@@ -91,9 +107,9 @@ double eta_of(const TreeNode& a, const TreeNode& b) {
 class Linker {
 public:
     Linker(const ElementTree& tree, std::span<const geometry::ElementShape> elements,
-           const visibility::Occluders& occluders, const kernel::TransportOptions& options,
-           const LinkOptions& link_options)
-        : tree_(tree), elements_(elements), occluders_(occluders), options_(options), link_options_(link_options) {}
+           const LightEstimate& light, const visibility::Occluders& occluders,
+           const kernel::TransportOptions& options, const LinkOptions& link_options)
+        : tree_(tree), elements_(elements), light_(light), occluders_(occluders), options_(options), link_options_(link_options) {}
 
     LinkedPairs run();
 
@@ -104,14 +120,20 @@ private:
     Samples sample(const TreeNode& a, const TreeNode& b) const;
     void cast_rays(const TreeNode& a, const TreeNode& b, Samples& samples) const;
     Link link_of(ElementPair pair) const;
+    void weigh_with(const LightEstimate& light);
+    double error2(const Link& link) const;
     double total_error2() const;
+    void refine(double tolerance);
     LinkedPairs result() const;
 
     const ElementTree& tree_;
     std::span<const geometry::ElementShape> elements_;
+    const LightEstimate& light_;
     const visibility::Occluders& occluders_;
     const kernel::TransportOptions& options_;
     const LinkOptions& link_options_;
+    std::vector<Power> power_;      ///< per node
+    double irradiance_power_ = 0.0; ///< integral of the squared irradiance over all elements of the tree
     std::vector<Link> links_;
     std::vector<ElementPair> near_;
     double rays_ = 0.0;
@@ -160,7 +182,7 @@ void Linker::cast_rays(const TreeNode& a, const TreeNode& b, Samples& samples) c
 // The block of one link and, per function of B, the squared residual outside the basis of A.
 struct Projection {
     std::vector<double> block; ///< size(a) x size(b)
-    double constant_residual = 0.0, other_residual = 0.0;
+    Residuals outside;
 };
 
 Projection project(const TreeNode& a, const TreeNode& b, std::span<const double> kernel, std::size_t row_step,
@@ -184,13 +206,10 @@ Projection project(const TreeNode& a, const TreeNode& b, std::span<const double>
     }
     for (std::size_t l = 0; l < nb; ++l) {
         for (std::size_t k = 0; k < na; ++k) norm[l] -= result.block[k * nb + l] * result.block[k * nb + l];
-        (l == 0 ? result.constant_residual : result.other_residual) += std::max(0.0, norm[l]);
+        (l == 0 ? result.outside.of_constant : result.outside.of_others) += std::max(0.0, norm[l]);
     }
     return result;
 }
-
-// What a group's basis drops is an error; what an element's drops, the elements would drop too.
-double weight_of_residual(const TreeNode& node) { return node.is_element() ? 0.0 : 1.0; }
 
 Link Linker::link_of(ElementPair pair) const {
     const TreeNode &a = tree_.nodes[pair.i], &b = tree_.nodes[pair.j];
@@ -210,15 +229,13 @@ Link Linker::link_of(ElementPair pair) const {
     const double product = product_error * samples.unoccluded / (eta * eta);
     const double common = sight + product * product;
 
-    const double at_a = common + weight_of_residual(a) * (onto_a.constant_residual + variation * onto_a.other_residual) +
-                        weight_of_residual(b) * variation * onto_b.constant_residual;
-    const double at_b = common + weight_of_residual(b) * (onto_b.constant_residual + variation * onto_b.other_residual) +
-                        weight_of_residual(a) * variation * onto_a.constant_residual;
-
-    Link link{.nodes = pair};
+    // What a group's basis drops is an error; what an element's drops, blocks of elements would drop too.
+    Link link{.nodes = pair, .common = common};
+    if (!a.is_element()) link.outside_i = onto_a.outside;
+    if (!b.is_element()) link.outside_j = onto_b.outside;
     link.rays = samples.rays;
-    link.error2 = at_a * b.power + at_b * a.power;
-    link.block_error = static_cast<float>(std::sqrt(std::max(at_a, at_b)));
+    const double outside = std::max(link.outside_i.of_constant, link.outside_j.of_constant);
+    link.block_error = static_cast<float>(std::sqrt(common + outside));
     if (onto_a.block[0] > 0.0) link.values.assign(onto_a.block.begin(), onto_a.block.end());
     return link;
 }
@@ -234,7 +251,7 @@ Examined Linker::examine(ElementPair pair, double limit) const {
     for (const Ball& ball : link_options_.movers)
         if (may_enter(ball, a, b)) return undivided;
     Examined linked{Outcome::Linked, link_of(pair)};
-    if (linked.link.error2 > limit) linked.outcome = undivided.outcome;
+    if (error2(linked.link) > limit) linked.outcome = undivided.outcome;
     return linked;
 }
 
@@ -272,23 +289,55 @@ void Linker::examine_all(std::vector<ElementPair> pairs, double limit) {
 
 double Linker::total_error2() const {
     double sum = 0.0;
-    for (const Link& link : links_) sum += link.error2;
+    for (const Link& link : links_) sum += error2(link);
     return sum;
 }
 
-LinkedPairs Linker::run() {
-    const TreeNode& root = tree_.nodes[tree_.root];
-    const auto root_number = static_cast<std::uint32_t>(tree_.root);
-    // In a closed scene the irradiance is on the average as large as the radiosity.
-    const double allowed = link_options_.tolerance * link_options_.tolerance * root.power;
+void Linker::weigh_with(const LightEstimate& light) {
+    std::vector<double> coefficients(tree_.hierarchy.layout.offsets[elements_.size()], 0.0);
+    std::vector<double> radiosity2(tree_.nodes.size(), 0.0), irradiance2(tree_.nodes.size(), 0.0);
+    for (std::size_t e = 0; e < elements_.size(); ++e) {
+        coefficients[tree_.hierarchy.layout.offsets[e]] = light.radiosity[e] * std::sqrt(elements_[e].area);
+        radiosity2[e] = elements_[e].area * light.radiosity[e] * light.radiosity[e];
+        irradiance2[e] = elements_[e].area * light.irradiance[e] * light.irradiance[e];
+    }
+    const std::vector<double> all = model::gather_groups(tree_.hierarchy, 1, coefficients);
+    power_.assign(tree_.nodes.size(), {});
+    for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
+        const TreeNode& node = tree_.nodes[n];
+        if (!node.is_element()) {
+            radiosity2[n] = radiosity2[node.first] + radiosity2[node.second];
+            irradiance2[n] = irradiance2[node.first] + irradiance2[node.second];
+        }
+        const std::size_t first = tree_.hierarchy.layout.offsets[n];
+        power_[n].constant = all[first] * all[first];
+        for (std::size_t k = first + 1; k < tree_.hierarchy.layout.offsets[n + 1]; ++k)
+            power_[n].linear += all[k] * all[k];
+        power_[n].rest = std::max(0.0, radiosity2[n] - power_[n].constant - power_[n].linear);
+    }
+    irradiance_power_ = irradiance2[tree_.root];
+}
+
+// The squared L2 error of irradiance that a link is expected to bring, over both of its nodes.
+double Linker::error2(const Link& link) const {
+    const auto brought = [&](const Power& sent, const Residuals& outside, const Residuals& outside_sender) {
+        return link.common * (sent.constant + sent.linear) + outside.of_constant * sent.constant +
+               outside.of_others * sent.linear + likeness * outside_sender.of_constant * sent.rest;
+    };
+    return brought(power_[link.nodes.j], link.outside_i, link.outside_j) +
+           brought(power_[link.nodes.i], link.outside_j, link.outside_i);
+}
+
+// Divides the links with the largest errors until all together are within a tolerance.
+void Linker::refine(double tolerance) {
+    const double allowed = tolerance * tolerance * irradiance_power_;
     double limit = allowed;
-    examine_all({{root_number, root_number}}, limit);
     while (total_error2() > allowed) {
         limit *= round_factor;
         std::vector<ElementPair> divided;
         std::vector<Link> kept;
         for (Link& link : links_) {
-            if (link.error2 <= limit)
+            if (error2(link) <= limit)
                 kept.push_back(std::move(link));
             else if (tree_.nodes[link.nodes.i].is_element() && tree_.nodes[link.nodes.j].is_element())
                 near_.push_back(link.nodes);
@@ -298,12 +347,25 @@ LinkedPairs Linker::run() {
         links_ = std::move(kept);
         examine_all(std::move(divided), limit);
     }
+}
+
+LinkedPairs Linker::run() {
+    weigh_with(light_);
+    const auto root = static_cast<std::uint32_t>(tree_.root);
+    examine_all({{root, root}}, std::numeric_limits<double>::infinity());
+    refine(coarse * link_options_.tolerance);
+    if (link_options_.refine_light) {
+        model::Hierarchy hierarchy = tree_.hierarchy;
+        hierarchy.links = result().links;
+        weigh_with(linked_light(light_, elements_, hierarchy));
+    }
+    refine(link_options_.tolerance);
     return result();
 }
 
 LinkedPairs Linker::result() const {
     LinkedPairs pairs{.near = near_, .rays = rays_};
-    pairs.error_estimate = std::sqrt(total_error2() / tree_.nodes[tree_.root].power);
+    pairs.error_estimate = std::sqrt(total_error2() / irradiance_power_);
     std::sort(pairs.near.begin(), pairs.near.end());
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < links_.size(); ++k)
@@ -320,9 +382,10 @@ LinkedPairs Linker::result() const {
 } // namespace
 
 LinkedPairs link_groups(const ElementTree& tree, std::span<const geometry::ElementShape> elements,
+                        const LightEstimate& light,
                         const visibility::Occluders& occluders, const kernel::TransportOptions& options,
                         const LinkOptions& link_options) {
-    return Linker(tree, elements, occluders, options, link_options).run();
+    return Linker(tree, elements, light, occluders, options, link_options).run();
 }
 
 } // namespace kinelux::coefficients

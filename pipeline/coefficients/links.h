@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coefficients/element_tree.h"
+#include "coefficients/light_estimate.h"
 #include "kernel/transport.h"
 #include "model/coefficients.h"
 #include "visibility/occluders.h"
@@ -21,6 +22,7 @@ struct Ball {
 struct LinkOptions {
     double tolerance = 5e-3; ///< relative L2 error of irradiance that all links together may be expected to add [1]
     std::span<const Ball> movers; ///< pairs that a mover may come between stay element pairs
+    bool refine_light = true;     ///< by the first links: where all light comes from elements of the tree
 };
 
 /// Transport divided between links and pairs of elements.
@@ -38,8 +40,10 @@ struct LinkedPairs {
 /// estimates (docs/hierarchy.md). Pairs of touching groups are divided down to elements. Pairs that normal cones prove
 /// to face away are in neither list. Deterministic.
 /// @param tree     of two elements or more
+/// @param light    even light; refined by the first links unless a body that moves emits
 /// @param options  occlusion and occluders as for blocks
 LinkedPairs link_groups(const ElementTree& tree, std::span<const geometry::ElementShape> elements,
+                        const LightEstimate& light,
                         const visibility::Occluders& occluders, const kernel::TransportOptions& options,
                         const LinkOptions& link_options);
 
