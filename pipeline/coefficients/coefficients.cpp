@@ -167,7 +167,7 @@ void group_distant_pairs(std::span<const ElementShape> elements, const model::Sc
     bool moving_light = false;
     for (std::size_t i = 0; i < elements.size(); ++i)
         moving_light = moving_light || (builder.rides(i) && scene.materials[elements[i].material.value].emits());
-    ElementTree tree = build_element_tree(elements, members);
+    ElementTree tree = build_element_tree(elements, members, occluders);
     LinkedPairs pairs =
         link_groups(tree, elements, even_light(elements, scene), occluders, options,
                     {.tolerance = tolerance, .movers = builder.movers(), .refine_light = !moving_light});

@@ -90,7 +90,22 @@ NodeSet element_rule(const ElementShape& element) {
     return rule;
 }
 
-TreeNode node_of(const ElementShape& element) {
+// Whether rays from all nodes, upright and oblique, meet the back of a face first.
+bool buried(const NodeSet& rule, const visibility::Occluders& occluders) {
+    constexpr double lean = 0.7; // of the oblique rays, tangent of the angle to the normal
+    for (const SurfaceNode& node : rule.nodes) {
+        const Vec3 helper = std::abs(node.normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+        const Vec3 u = glm::normalize(glm::cross(helper, node.normal)), v = glm::cross(node.normal, u);
+        for (const Vec3& aside : {Vec3(0.0), u, -u, v, -v}) {
+            const Vec3 direction = node.normal + lean * aside;
+            const auto hit = occluders.first_hit(node.position, direction);
+            if (!hit || glm::dot(hit->normal, direction) <= 0.0) return false;
+        }
+    }
+    return true;
+}
+
+TreeNode node_of(const ElementShape& element, const visibility::Occluders& occluders) {
     TreeNode node;
     node.box_low = element.box_low;
     node.box_high = element.box_high;
@@ -100,6 +115,7 @@ TreeNode node_of(const ElementShape& element) {
     node.cone_cosine = element.cone_cosine;
     node.area = element.area;
     node.rule = element_rule(element);
+    node.buried = buried(node.rule, occluders);
     node.basis_size = element.basis.size();
     return node;
 }
@@ -147,7 +163,15 @@ public:
     Builder(std::span<const std::uint32_t> members, ElementTree& tree) : tree_(tree), order_(members.begin(), members.end()) {}
 
     void build() {
-        if (!order_.empty()) tree_.root = build(0, order_.size());
+        const auto buried = std::stable_partition(order_.begin(), order_.end(),
+                                                  [&](std::uint32_t e) { return !tree_.nodes[e].buried; });
+        const auto open = static_cast<std::size_t>(buried - order_.begin());
+        if (open == 0 || open == order_.size())
+            tree_.root = build(0, order_.size());
+        else {
+            const std::size_t first = build(0, open), second = build(open, order_.size());
+            tree_.root = join(first, second);
+        }
     }
 
 private:
@@ -276,13 +300,14 @@ model::Hierarchy hierarchy_of(const std::vector<TreeNode>& nodes, std::size_t el
 
 } // namespace
 
-ElementTree build_element_tree(std::span<const ElementShape> elements, std::span<const std::uint32_t> members) {
+ElementTree build_element_tree(std::span<const ElementShape> elements, std::span<const std::uint32_t> members,
+                               const visibility::Occluders& occluders) {
     ElementTree tree;
     tree.nodes.resize(elements.size());
     core::parallel_for(elements.size(),
-                       [&](std::size_t e) { tree.nodes[e] = node_of(elements[e]); });
+                       [&](std::size_t e) { tree.nodes[e] = node_of(elements[e], occluders); });
     tree.nodes.reserve(2 * elements.size());
-    Builder(members, tree).build();
+    if (!members.empty()) Builder(members, tree).build();
     tree.hierarchy = hierarchy_of(tree.nodes, elements.size());
     return tree;
 }

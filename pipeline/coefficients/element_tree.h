@@ -8,6 +8,7 @@
 
 #include "geometry/element_shape.h"
 #include "model/coefficients.h"
+#include "visibility/occluders.h"
 
 namespace kinelux::coefficients {
 
@@ -20,6 +21,7 @@ struct TreeNode {
     Vec3 mean_normal{0.0};    ///< axis of the normal cone, unit
     double cone_cosine = 1.0; ///< of the cone's half angle
     double area = 0.0;        ///< [m2]
+    bool buried = false;      ///< all around it are back sides
     /// A quadrature with positive weights exact to degree 2 in position (clusters: of a few spread nodes), and the
     /// node's basis there: an element's own; of a group 1/sqrt(A) and up to three linear functions of position along
     /// the principal axes of its area, orthonormal in area.
@@ -36,11 +38,14 @@ struct ElementTree {
     model::Hierarchy hierarchy;  ///< layout, groups and restrictions; without links
 };
 
-/// Groups elements by normal first, until those of a group lie within about 60 degrees of each other, then by halves of
+/// Groups elements that lie inside of something apart from all others (below a box on the floor no light may leak in from
+/// groups that reach below it): those from whose nodes only back sides are seen. Then by normal, until those of a group lie within about 60 degrees of each other, then by halves of
 /// the longest side of their centres' box.
-/// @param elements  in order of ElementId
-/// @param members   numbers of those in the tree, increasing
+/// @param elements   in order of ElementId
+/// @param members    numbers of those in the tree, increasing
+/// @param occluders  of all bodies at rest
 ElementTree build_element_tree(std::span<const geometry::ElementShape> elements,
-                               std::span<const std::uint32_t> members);
+                               std::span<const std::uint32_t> members,
+                               const visibility::Occluders& occluders);
 
 } // namespace kinelux::coefficients

@@ -30,6 +30,10 @@ constexpr double product_error = 0.02;
 // product, squared: they are not alike.
 constexpr double likeness = 0.25;
 
+// Share of the residuals at a node that have the same sign, whoever sends the light: where an edge of a shadow crosses a
+// group, all that arrives there is smeared across it.
+constexpr double coherence = 0.3;
+
 // Each round's limit of a single link's squared error, relative to the round before.
 constexpr double round_factor = 0.25;
 
@@ -53,6 +57,11 @@ struct Link {
 // The integral over a node of its squared radiosity: of its mean, of its linear part, of the rest.
 struct Power {
     double constant = 0.0, linear = 0.0, rest = 0.0;
+};
+
+// Squared L2 error of irradiance at one node of a link: noise that differs from link to link, and what is smeared.
+struct Brought {
+    double noise = 0.0, smeared = 0.0;
 };
 
 enum class Outcome : std::uint8_t { Nothing, Linked, Divide, Near };
@@ -121,7 +130,9 @@ private:
     void cast_rays(const TreeNode& a, const TreeNode& b, Samples& samples) const;
     Link link_of(ElementPair pair) const;
     void weigh_with(const LightEstimate& light);
+    std::array<Brought, 2> brought_by(const Link& link) const;
     double error2(const Link& link) const;
+    void add_up_smeared();
     double total_error2() const;
     void refine(double tolerance);
     LinkedPairs result() const;
@@ -133,6 +144,7 @@ private:
     const kernel::TransportOptions& options_;
     const LinkOptions& link_options_;
     std::vector<Power> power_;      ///< per node
+    std::vector<double> smeared_;   ///< per node, of the links before this round
     double irradiance_power_ = 0.0; ///< integral of the squared irradiance over all elements of the tree
     std::vector<Link> links_;
     std::vector<ElementPair> near_;
@@ -318,21 +330,50 @@ void Linker::weigh_with(const LightEstimate& light) {
     irradiance_power_ = irradiance2[tree_.root];
 }
 
-// The squared L2 error of irradiance that a link is expected to bring, over both of its nodes.
+Brought brought(double common, const Power& sent, const Residuals& outside, const Residuals& outside_sender) {
+    return {common * (sent.constant + sent.linear) + likeness * outside_sender.of_constant * sent.rest,
+            outside.of_constant * sent.constant + outside.of_others * sent.linear};
+}
+
+std::array<Brought, 2> Linker::brought_by(const Link& link) const {
+    return {brought(link.common, power_[link.nodes.j], link.outside_i, link.outside_j),
+            brought(link.common, power_[link.nodes.i], link.outside_j, link.outside_i)};
+}
+
+// A link's share of the squared error of all links. Noise adds up by squares; of what is smeared, a part adds up as it
+// is, so that a link weighs the more, the more is smeared at its nodes already.
 double Linker::error2(const Link& link) const {
-    const auto brought = [&](const Power& sent, const Residuals& outside, const Residuals& outside_sender) {
-        return link.common * (sent.constant + sent.linear) + outside.of_constant * sent.constant +
-               outside.of_others * sent.linear + likeness * outside_sender.of_constant * sent.rest;
+    const auto [at_i, at_j] = brought_by(link);
+    const auto share = [&](const Brought& it, std::uint32_t node) {
+        return it.noise + (1.0 - coherence) * it.smeared +
+               coherence * std::sqrt(it.smeared * tree_.nodes[node].area) * smeared_[node];
     };
-    return brought(power_[link.nodes.j], link.outside_i, link.outside_j) +
-           brought(power_[link.nodes.i], link.outside_j, link.outside_i);
+    return share(at_i, link.nodes.i) + share(at_j, link.nodes.j);
+}
+
+// The root mean square of what all links together smear, per area, for each node the mean over its elements.
+void Linker::add_up_smeared() {
+    smeared_.assign(tree_.nodes.size(), 0.0);
+    for (const Link& link : links_) {
+        const auto [at_i, at_j] = brought_by(link);
+        smeared_[link.nodes.i] += std::sqrt(at_i.smeared / tree_.nodes[link.nodes.i].area);
+        smeared_[link.nodes.j] += std::sqrt(at_j.smeared / tree_.nodes[link.nodes.j].area);
+    }
+    for (std::size_t n = tree_.nodes.size(); n-- > elements_.size();) {
+        smeared_[tree_.nodes[n].first] += smeared_[n];
+        smeared_[tree_.nodes[n].second] += smeared_[n];
+    }
+    for (std::size_t n = elements_.size(); n < tree_.nodes.size(); ++n) {
+        const TreeNode &node = tree_.nodes[n], &first = tree_.nodes[node.first], &second = tree_.nodes[node.second];
+        smeared_[n] = (first.area * smeared_[node.first] + second.area * smeared_[node.second]) / node.area;
+    }
 }
 
 // Divides the links with the largest errors until all together are within a tolerance.
 void Linker::refine(double tolerance) {
     const double allowed = tolerance * tolerance * irradiance_power_;
     double limit = allowed;
-    while (total_error2() > allowed) {
+    for (add_up_smeared(); total_error2() > allowed; add_up_smeared()) {
         limit *= round_factor;
         std::vector<ElementPair> divided;
         std::vector<Link> kept;
@@ -352,6 +393,7 @@ void Linker::refine(double tolerance) {
 LinkedPairs Linker::run() {
     weigh_with(light_);
     const auto root = static_cast<std::uint32_t>(tree_.root);
+    add_up_smeared();
     examine_all({{root, root}}, std::numeric_limits<double>::infinity());
     refine(coarse * link_options_.tolerance);
     if (link_options_.refine_light) {
