@@ -88,6 +88,7 @@ public:
 
     bool rides(std::size_t i) const { return carriers_[elements_[i].object.value].has_value(); }
     std::span<const Ball> movers() const { return movers_; }
+    std::span<const ElementPair> near() const { return near_; }
 
     /// From now on only these pairs of elements that rest have blocks; links hold the others. @param near  sorted
     void restrict_to(std::vector<ElementPair> near) {
@@ -192,6 +193,17 @@ double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder
     return sum / (1024.0 * 1024.0);
 }
 
+// Memory of links and of the blocks that remain for near pairs at rest.
+double linked_memory_mib(std::span<const ElementShape> elements, const model::Hierarchy& hierarchy,
+                         std::span<const ElementPair> near) {
+    double bytes = static_cast<double>(hierarchy.links.entries.size() * sizeof(model::BlockEntry) +
+                                       hierarchy.links.values.size() * sizeof(float));
+    for (const ElementPair& pair : near)
+        bytes += static_cast<double>(elements[pair.i].basis.size() * elements[pair.j].basis.size() * sizeof(float) +
+                                     sizeof(model::BlockEntry));
+    return bytes / (1024.0 * 1024.0);
+}
+
 } // namespace
 
 kernel::TransportOptions transport_options_for(const model::Scene& scene, const model::Plan& plan) {
@@ -217,17 +229,19 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
                                          const kernel::TransportOptions& options, double memory_limit_mib,
                                          const GroupingOptions& grouping) {
     RowBuilder builder(rest_elements, scene, plan, occluders, options);
-    const double bound_mib = memory_bound_mib(rest_elements, builder);
-    const bool large = rest_elements.size() > grouping.most_elements || bound_mib > memory_limit_mib;
+    double needed_mib = memory_bound_mib(rest_elements, builder);
+    const bool large = rest_elements.size() > grouping.most_elements || needed_mib > memory_limit_mib;
     model::Coefficients result;
     if (grouping.use == Grouping::Always || (grouping.use == Grouping::Auto && large))
         group_distant_pairs(rest_elements, scene, occluders, options, grouping.share * scene.accuracy.target,
                             builder, result);
-    if (result.hierarchy.empty() && bound_mib > memory_limit_mib)
+    if (!result.hierarchy.empty())
+        needed_mib = linked_memory_mib(rest_elements, result.hierarchy, builder.near());
+    if (needed_mib > memory_limit_mib)
         throw core::ResourceError(fmt::format("the transport blocks of {} elements may take {:.0f} MiB, "
                                               "{:.0f} MiB are allowed; ask for a lower "
                                               "accuracy, a larger element size, or raise --memory-limit",
-                                              rest_elements.size(), bound_mib, memory_limit_mib));
+                                              rest_elements.size(), needed_mib, memory_limit_mib));
 
     std::vector<Row> rows(rest_elements.size());
     core::Progress progress("coefficients", rows.size());
