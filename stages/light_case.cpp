@@ -10,7 +10,7 @@
 namespace kinelux::stages {
 
 kernel::TransportOptions LightCase::transport_options(std::uint64_t seed) const {
-    kernel::TransportOptions options = coefficients::transport_options_for(scene, plan);
+    kernel::TransportOptions options = coefficients::transport_options_for(scene, plan, elements);
     options.seed = seed;
     return options;
 }

@@ -34,13 +34,28 @@ struct Bounds {
     }
 };
 
+// Corners of a domain say little about a surface that closes on itself: points inside its triangles count as well.
+void add_domain(Bounds& bounds, const model::Patch& patch) {
+    for (const Vec2& uv : patch.points) bounds.add(geometry::position(patch.surface, uv));
+    if (patch.surface.type == model::SurfaceType::Plane) return;
+    constexpr int steps = 16; // per edge of a triangle
+    for (const model::Triangle& t : patch.triangles) {
+        const Vec2 &p = patch.points[t[0]], a = patch.points[t[1]] - p, b = patch.points[t[2]] - p;
+        for (int i = 0; i <= steps; ++i)
+            for (int j = 0; i + j <= steps; ++j)
+                bounds.add(geometry::position(patch.surface,
+                                              p + (static_cast<double>(i) * a + static_cast<double>(j) * b) /
+                                                      static_cast<double>(steps)));
+    }
+}
+
 // Bounds of all patches and small triangles whose object is wanted.
 template <class Wanted>
 Bounds bounds_of(const model::PatchSet& patches, const Wanted& wanted) {
     Bounds bounds;
     for (const model::Patch& patch : patches.patches) {
         if (!wanted(patch.object)) continue;
-        for (const Vec2& uv : patch.points) bounds.add(geometry::evaluate(patch.surface, uv).position);
+        add_domain(bounds, patch);
     }
     for (std::size_t t = 0; t < patches.small.triangles.size(); ++t) {
         if (!wanted(patches.small.objects[t])) continue;

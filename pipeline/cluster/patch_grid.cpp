@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -37,15 +39,38 @@ Bounds parameter_bounds(const model::Patch& patch) {
     return bounds;
 }
 
-// Metres on the surface per unit of u and of v, in the middle of the domain; 1 on planes.
+// Metres on the surface per unit of u and of v, where they are most: 1 on planes, the equator on whole spheres, the
+// outer circle on tori.
 Vec2 metres_per_parameter(const model::Surface& surface, const Bounds& bounds) {
     if (surface.type == model::SurfaceType::Plane) return Vec2{1.0};
+    constexpr int samples = 32;    // along u and along v
     constexpr double share = 1e-3; // of the extent: short enough for a tangent, long enough for rounding
-    const Vec2 middle = 0.5 * (bounds.low + bounds.high);
-    const Vec2 step = share * (bounds.high - bounds.low);
-    const auto at = [&](const Vec2& uv) { return geometry::evaluate(surface, uv).position; };
-    return {glm::length(at(middle + Vec2{step.x, 0.0}) - at(middle - Vec2{step.x, 0.0})) / (2.0 * step.x),
-            glm::length(at(middle + Vec2{0.0, step.y}) - at(middle - Vec2{0.0, step.y})) / (2.0 * step.y)};
+    const Vec2 extent = bounds.high - bounds.low, step = share * extent;
+    const auto at = [&](const Vec2& uv) { return geometry::position(surface, uv); };
+    Vec2 most{0.0};
+    for (int i = 0; i <= samples; ++i)
+        for (int j = 0; j <= samples; ++j) {
+            const Vec2 middle =
+                bounds.low + 0.5 * step + (extent - step) * Vec2{i, j} / static_cast<double>(samples);
+            const Vec2 half{0.5 * step};
+            const Vec2 speed{glm::distance(at(middle - Vec2{half.x, 0.0}), at(middle + Vec2{half.x, 0.0})),
+                             glm::distance(at(middle - Vec2{0.0, half.y}), at(middle + Vec2{0.0, half.y}))};
+            most = glm::max(most, speed / step);
+        }
+    return most;
+}
+
+// Largest steps of u and v that keep an element from bending round: a quarter turn.
+Vec2 largest_turn(const model::Surface& surface) {
+    constexpr double quarter = 0.5 * std::numbers::pi;
+    constexpr double any = std::numeric_limits<double>::infinity();
+    switch (surface.type) {
+    case model::SurfaceType::Cylinder:
+    case model::SurfaceType::Cone: return {quarter, any};
+    case model::SurfaceType::Sphere:
+    case model::SurfaceType::Torus: return {quarter, quarter};
+    default: return {any, any};
+    }
 }
 
 double area(const Piece& piece) {
@@ -136,7 +161,8 @@ Vec2 extent_on_surface(const model::Patch& patch) {
 
 std::vector<Piece> cut_patch(const model::Patch& patch, double largest_edge) {
     const Bounds bounds = parameter_bounds(patch);
-    const Vec2 step = Vec2{largest_edge} / metres_per_parameter(patch.surface, bounds);
+    const Vec2 step = glm::min(Vec2{largest_edge} / metres_per_parameter(patch.surface, bounds),
+                               largest_turn(patch.surface));
     Piece whole;
     for (const model::Triangle& t : patch.triangles) {
         whole.push_back({patch.points[t[0]], patch.points[t[1]], patch.points[t[2]]});

@@ -206,11 +206,23 @@ double linked_memory_mib(std::span<const ElementShape> elements, const model::Hi
 
 } // namespace
 
-kernel::TransportOptions transport_options_for(const model::Scene& scene, const model::Plan& plan) {
+kernel::TransportOptions transport_options_for(const model::Scene& scene, const model::Plan& plan,
+                                               std::span<const ElementShape> elements) {
+    double area = 0.0, reflected = 0.0;
+    for (const ElementShape& element : elements) {
+        const auto& rho = scene.materials[element.material.value].reflectance;
+        area += element.area;
+        reflected += element.area * *std::max_element(rho.begin(), rho.end());
+    }
+    const double mean = area > 0.0 ? reflected / area : 0.0;
+    // The blocks' share of the error budget, and what bounces leave of it.
+    constexpr double share = 0.2, brightest = 0.999;
+    const double bounces = 1.0 / (1.0 - std::min(mean, brightest));
     kernel::TransportOptions options;
-    // A tenth of the accuracy is the blocks' share of the error budget.
-    options.tolerance = std::clamp(0.1 * scene.accuracy.target, 1e-6, 0.1);
-    options.probe_rays = scene.accuracy.target < 0.02 ? 32 : 16;
+    options.tolerance = std::clamp(share * scene.accuracy.target / bounces, 1e-9, 0.1);
+    // Errors of what stands between have random signs: a row holds many such blocks, all of them smaller than it.
+    constexpr double scattered = 20.0;
+    options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
     options.occlusion = plan.static_occlusion || plan.moving_occlusion;
     return options;
 }

@@ -14,8 +14,10 @@
 
 namespace kinelux::coefficients {
 
-/// Transport options for a scene's accuracy and the plan's effects.
-kernel::TransportOptions transport_options_for(const model::Scene& scene, const model::Plan& plan);
+/// Transport options for a scene's accuracy, its reflectances and the plan's effects: errors of rows are multiplied by
+/// the bounces, rho / (1 - rho), so blocks must be the better the brighter the scene.
+kernel::TransportOptions transport_options_for(const model::Scene& scene, const model::Plan& plan,
+                                               std::span<const geometry::ElementShape> elements);
 
 /// How the unknowns of all elements follow each other. @param elements  in order of ElementId
 model::UnknownLayout unknown_layout(std::span<const geometry::ElementShape> elements);

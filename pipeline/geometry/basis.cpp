@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "core/error.h"
@@ -15,41 +14,6 @@ namespace {
 
 // A function whose part orthogonal to the earlier ones is below this share of it is not determined by the domain.
 constexpr double rank_tolerance = 1e-6;
-// Domains rounder than this ratio of principal moments keep their parameter axes: principal axes would be arbitrary.
-constexpr double isotropic_ratio = 1.5;
-
-struct Inertia {
-    double area = 0.0;
-    Vec2 centre{0.0};
-    double uu = 0.0, uv = 0.0, vv = 0.0; ///< central second moments per area
-};
-
-Inertia inertia_of(std::span<const DomainPoint> domain) {
-    Inertia result;
-    for (const DomainPoint& p : domain) {
-        result.area += p.weight;
-        result.centre += p.weight * p.parameter;
-    }
-    if (!(result.area > 0.0))
-        throw core::GeometryError("an element has no area; clean the mesh of degenerate faces");
-    result.centre /= result.area;
-    for (const DomainPoint& p : domain) {
-        const Vec2 d = p.parameter - result.centre;
-        result.uu += p.weight / result.area * d.x * d.x;
-        result.uv += p.weight / result.area * d.x * d.y;
-        result.vv += p.weight / result.area * d.y * d.y;
-    }
-    return result;
-}
-
-Vec2 principal_axis(const Inertia& inertia) {
-    const double mean = 0.5 * (inertia.uu + inertia.vv);
-    const double spread = std::hypot(0.5 * (inertia.uu - inertia.vv), inertia.uv);
-    if (mean + spread <= isotropic_ratio * (mean - spread)) return {1.0, 0.0};
-    const double angle = 0.5 * std::atan2(2.0 * inertia.uv, inertia.uu - inertia.vv);
-    return {std::cos(angle), std::sin(angle)};
-}
-
 double dot(std::span<const double> a, std::span<const double> b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
@@ -58,26 +22,15 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 } // namespace
 
-Basis::Basis(std::span<const DomainPoint> domain, int degree) : degree_(degree) {
+Basis::Basis(std::span<const DomainPoint> domain, int degree) : degree_(degree), frame_(domain) {
     if (degree < 0 || degree > max_degree)
         throw core::OptionError("basis degree " + std::to_string(degree) + " is not in 0.." +
                                 std::to_string(max_degree));
-    const Inertia inertia = inertia_of(domain);
-    centre_ = inertia.centre;
-    axis_u_ = principal_axis(inertia);
-    axis_v_ = {-axis_u_.y, axis_u_.x};
-    Vec2 half_extent(0.0);
-    for (const DomainPoint& p : domain) {
-        const Vec2 d = p.parameter - centre_;
-        half_extent = glm::max(half_extent, glm::abs(Vec2(glm::dot(d, axis_u_), glm::dot(d, axis_v_))));
-    }
-    inverse_half_extent_ = 1.0 / glm::max(half_extent, Vec2(std::numeric_limits<double>::min() * 1e20));
-
     // The weighted Vandermonde matrix: column m holds sqrt(w) L_m at the points.
     const std::size_t n = size(), points = domain.size();
     std::vector<double> vandermonde(n * points), values(n);
     for (std::size_t p = 0; p < points; ++p) {
-        legendre_products(domain[p].parameter, values);
+        frame_.products(domain[p].parameter, degree, values);
         for (std::size_t m = 0; m < n; ++m)
             vandermonde[m * points + p] = std::sqrt(domain[p].weight) * values[m];
     }
@@ -111,31 +64,44 @@ Basis::Basis(std::span<const DomainPoint> domain, int degree) : degree_(degree) 
         }
 }
 
-void Basis::legendre_products(const Vec2& parameter, std::span<double> values) const {
-    const Vec2 d = parameter - centre_;
-    const double x = glm::dot(d, axis_u_) * inverse_half_extent_.x;
-    const double y = glm::dot(d, axis_v_) * inverse_half_extent_.y;
-    std::array<double, max_degree + 1> px{1.0, x}, py{1.0, y};
-    for (int k = 2; k <= degree_; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        px[i] = ((2 * k - 1) * x * px[i - 1] - (k - 1) * px[i - 2]) / k;
-        py[i] = ((2 * k - 1) * y * py[i - 1] - (k - 1) * py[i - 2]) / k;
-    }
-    std::size_t m = 0;
-    for (int total = 0; total <= degree_; ++total)
-        for (int j = 0; j <= total; ++j)
-            values[m++] = px[static_cast<std::size_t>(total - j)] * py[static_cast<std::size_t>(j)];
-}
-
 void Basis::evaluate(const Vec2& parameter, std::span<double> values) const {
     std::array<double, basis_size(max_degree)> products;
-    legendre_products(parameter, products);
+    frame_.products(parameter, degree_, products);
     const std::size_t n = size();
     for (std::size_t k = 0; k < n; ++k) {
         double sum = 0.0;
         for (std::size_t m = 0; m <= k; ++m) sum += coefficients_[k * n + m] * products[m];
         values[k] = sum;
     }
+}
+
+std::vector<double> Basis::monomial_coefficients() const {
+    // Row k of `legendre` holds the coefficients of P_k by powers.
+    std::array<std::array<double, max_degree + 1>, max_degree + 1> legendre{};
+    legendre[0][0] = 1.0;
+    legendre[1][1] = 1.0;
+    for (std::size_t k = 2; k <= max_degree; ++k)
+        for (std::size_t p = 0; p <= k; ++p) {
+            const auto order = static_cast<double>(k);
+            const double raised = p > 0 ? (2.0 * order - 1.0) * legendre[k - 1][p - 1] : 0.0;
+            legendre[k][p] = (raised - (order - 1.0) * legendre[k - 2][p]) / order;
+        }
+    const auto index = [](std::size_t x_power, std::size_t y_power) {
+        const std::size_t total = x_power + y_power;
+        return total * (total + 1) / 2 + y_power;
+    };
+    const std::size_t n = size();
+    const auto degree = static_cast<std::size_t>(degree_);
+    std::vector<double> result(n * n, 0.0);
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t total = 0; total <= degree; ++total)
+            for (std::size_t j = 0; j <= total; ++j) {
+                const double coefficient = coefficients_[k * n + index(total - j, j)];
+                for (std::size_t p = 0; p <= total - j; ++p)
+                    for (std::size_t q = 0; q <= j; ++q)
+                        result[k * n + index(p, q)] += coefficient * legendre[total - j][p] * legendre[j][q];
+            }
+    return result;
 }
 
 } // namespace kinelux::geometry

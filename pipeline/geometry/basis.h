@@ -5,21 +5,11 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "geometry/legendre_frame.h"
 
 namespace kinelux::geometry {
 
-constexpr int max_degree = 6;
-
-/// Polynomials of total degree <= degree in two parameters: (degree + 1)(degree + 2) / 2.
-constexpr std::size_t basis_size(int degree) {
-    return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2);
-}
-
-/// A point of a parameter domain with its share of the area.
-struct DomainPoint {
-    Vec2 parameter;
-    double weight; ///< [m2], > 0
-};
+constexpr int max_degree = 6; ///< of a basis
 
 /// Polynomials orthonormal with respect to area on an element's real, trimmed domain; function 0 is 1/sqrt(area), and
 /// function k has no component of the functions before it. Stable on slivers: principal axes of the area, scaled to
@@ -37,14 +27,15 @@ public:
     std::size_t size() const { return basis_size(degree_); }
     /// All functions at a parameter point. @param values  size() values [1/m]
     void evaluate(const Vec2& parameter, std::span<double> values) const;
+    /// The coordinates (x, y) in which the domain fills [-1, 1]^2; affine in the parameter.
+    Vec2 scaled(const Vec2& parameter) const { return frame_.scaled(parameter); }
+    /// The functions as polynomials of the scaled coordinates: size() x size(), row k = function k, columns the
+    /// monomials x^(t-j) y^j by total degree t, then by j [1/m].
+    std::vector<double> monomial_coefficients() const;
 
 private:
-    void legendre_products(const Vec2& parameter, std::span<double> values) const;
-
     int degree_ = 0;
-    Vec2 centre_{0.0};
-    Vec2 axis_u_{1.0, 0.0}, axis_v_{0.0, 1.0};
-    Vec2 inverse_half_extent_{1.0};
+    LegendreFrame frame_;
     std::vector<double> coefficients_; ///< lower triangular, size() x size(), row k = function k
 };
 

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "geometry/quadrature.h"
-#include "geometry/quadrature_compression.h"
+#include "geometry/element_quadrature.h"
+#include "geometry/facet_loops.h"
 #include "geometry/surface.h"
 
 namespace kinelux::geometry {
@@ -17,8 +19,9 @@ namespace kinelux::geometry {
 namespace {
 
 constexpr double planar_tolerance = 1e-7; ///< of the element's radius
-constexpr std::size_t cluster_nodes = 16; ///< of a cluster's coarse quadrature at the most
-constexpr std::size_t few_facets = 3;     ///< an element of so few needs no compressed quadrature
+constexpr int samples = 8;                ///< per facet edge, to find the bounds of a curved patch
+
+bool is_curved(const model::Surface& surface) { return surface.type != model::SurfaceType::Plane; }
 
 Facet make_facet(const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& parameters) {
     const Vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -32,14 +35,14 @@ std::vector<Facet> patch_facets(const model::Patch& patch, const model::ClusterT
     for (std::uint32_t t = 0; t < element.triangle_count; ++t) {
         const model::DomainTriangle& uv = tree.domain_triangles[element.first_triangle + t];
         std::array<Vec3, 3> corners;
-        for (std::size_t c = 0; c < 3; ++c) corners[c] = evaluate(patch.surface, uv[c]).position;
+        for (std::size_t c = 0; c < 3; ++c) corners[c] = position(patch.surface, uv[c]);
         Facet facet = make_facet(corners, uv);
         if (patch.surface.orientation < 0.0) {
             std::swap(facet.corners[1], facet.corners[2]);
             std::swap(facet.parameters[1], facet.parameters[2]);
             facet.normal = -facet.normal;
         }
-        if (facet.area > 0.0) facets.push_back(facet);
+        if (facet.area > 0.0 || is_curved(patch.surface)) facets.push_back(facet);
     }
     return facets;
 }
@@ -71,108 +74,142 @@ std::vector<Facet> cluster_facets(const model::SmallTriangles& small, const mode
     return facets;
 }
 
-void set_bounds(ElementShape& shape) {
+// Points that an element lies between, and how far it may reach beyond them.
+struct Extent {
+    std::vector<Vec3> points;
+    double margin = 0.0;
+};
+
+// Points of the true surface over a facet, at equal steps of its parameters, row by row.
+std::vector<std::vector<Vec3>> surface_grid(const model::Surface& surface, const Facet& facet) {
+    std::vector<std::vector<Vec3>> rows;
+    const Vec2 step_1 = (facet.parameters[1] - facet.parameters[0]) / static_cast<double>(samples);
+    const Vec2 step_2 = (facet.parameters[2] - facet.parameters[0]) / static_cast<double>(samples);
+    for (int i = 0; i <= samples; ++i) {
+        rows.emplace_back();
+        for (int j = 0; i + j <= samples; ++j)
+            rows.back().push_back(position(surface, facet.parameters[0] + static_cast<double>(i) * step_1 +
+                                                        static_cast<double>(j) * step_2));
+    }
+    return rows;
+}
+
+// Between samples a surface leaves their chords by an eighth of its second differences along each of two directions and
+// mixed; four eighths of the largest bounds their sum.
+Extent extent_of(const ElementShape& shape) {
+    Extent extent;
+    for (const Facet& facet : shape.facets) {
+        if (!shape.surface) {
+            extent.points.insert(extent.points.end(), facet.corners.begin(), facet.corners.end());
+            continue;
+        }
+        const auto rows = surface_grid(*shape.surface, facet);
+        const auto second_difference = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+            extent.margin = std::max(extent.margin, 0.5 * glm::length(a - 2.0 * b + c));
+        };
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            extent.points.insert(extent.points.end(), rows[i].begin(), rows[i].end());
+            for (std::size_t j = 1; j + 1 < rows[i].size(); ++j)
+                second_difference(rows[i][j - 1], rows[i][j], rows[i][j + 1]);
+            for (std::size_t j = 0; i > 0 && j < rows[i].size() && i + j < samples; ++j)
+                second_difference(rows[i - 1][j], rows[i][j], rows[i + 1][j]);
+        }
+    }
+    return extent;
+}
+
+void set_box(ElementShape& shape, const Extent& extent) {
     shape.box_low = Vec3(std::numeric_limits<double>::infinity());
     shape.box_high = -shape.box_low;
-    Vec3 mean(0.0);
-    for (const Facet& facet : shape.facets) {
-        for (const Vec3& corner : facet.corners) {
-            shape.box_low = glm::min(shape.box_low, corner);
-            shape.box_high = glm::max(shape.box_high, corner);
-        }
-        mean += facet.area * facet.normal;
-        shape.area += facet.area;
+    for (const Vec3& point : extent.points) {
+        shape.box_low = glm::min(shape.box_low, point);
+        shape.box_high = glm::max(shape.box_high, point);
     }
+    shape.box_low -= extent.margin;
+    shape.box_high += extent.margin;
+}
+
+double angle_between(const Vec3& a, const Vec3& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+// The cosine of the largest angle between the true normals and the mean one. Outside the samples a normal turns by no
+// more than between samples two steps apart.
+double curved_cone_cosine(const ElementShape& shape) {
+    double widest = 0.0, largest_turn = 0.0;
+    for (const Facet& facet : shape.facets) {
+        std::vector<Vec3> row, previous_row;
+        for (int i = 0; i < samples; ++i, previous_row = std::exchange(row, {}))
+            for (int j = 0; i + j < samples; ++j) {
+                // Inside the facet: at its corners a pole may have no normal.
+                const double b1 = (i + 1.0 / 3.0) / samples, b2 = (j + 1.0 / 3.0) / samples;
+                Vec2 parameter;
+                const Vec3 normal = node_at(shape, facet, {1.0 - b1 - b2, b1, b2}, parameter).normal;
+                widest = std::max(widest, angle_between(normal, shape.mean_normal));
+                if (j > 0) largest_turn = std::max(largest_turn, angle_between(normal, row.back()));
+                if (i > 0)
+                    largest_turn = std::max(largest_turn,
+                                            angle_between(normal, previous_row[static_cast<std::size_t>(j)]));
+                row.push_back(normal);
+            }
+    }
+    return std::cos(std::min(widest + 2.0 * largest_turn, std::numbers::pi));
+}
+
+// Any direction where the normals cancel.
+Vec3 mean_direction(const Vec3& normal_area, double area) {
+    constexpr double cancelled = 1e-9; // of the area
+    return glm::length(normal_area) > cancelled * area ? glm::normalize(normal_area) : Vec3(0.0, 0.0, 1.0);
+}
+
+void set_bounds(ElementShape& shape) {
+    const Extent extent = extent_of(shape);
+    set_box(shape, extent);
     shape.centre = 0.5 * (shape.box_low + shape.box_high);
-    shape.mean_normal = glm::length(mean) > 1e-9 * shape.area ? glm::normalize(mean) : Vec3(0.0, 0.0, 1.0);
+    for (const Vec3& point : extent.points)
+        shape.radius = std::max(shape.radius, glm::distance(point, shape.centre) + extent.margin);
+}
+
+// Normals and planarity of the facets; those of a curved patch follow with its quadrature.
+void set_normals(ElementShape& shape) {
+    Vec3 mean(0.0);
+    double area = 0.0;
     for (const Facet& facet : shape.facets) {
-        for (const Vec3& corner : facet.corners)
-            shape.radius = std::max(shape.radius, glm::distance(corner, shape.centre));
-        shape.cone_cosine = std::min(shape.cone_cosine, glm::dot(facet.normal, shape.mean_normal));
+        mean += facet.area * facet.normal;
+        area += facet.area;
     }
+    shape.mean_normal = mean_direction(mean, area);
+    for (const Facet& facet : shape.facets)
+        shape.cone_cosine = std::min(shape.cone_cosine, glm::dot(facet.normal, shape.mean_normal));
     const Vec3 origin = shape.facets.front().corners[0];
     for (const Facet& facet : shape.facets)
         for (const Vec3& corner : facet.corners)
             if (std::abs(glm::dot(corner - origin, shape.mean_normal)) > planar_tolerance * shape.radius)
                 shape.planar = false;
-    shape.planar = shape.planar && shape.cone_cosine > 0.5;
+    shape.planar = shape.planar && shape.cone_cosine > 0.5 && !shape.surface;
 }
 
-struct RawNode {
-    SurfaceNode node;
-    Vec2 parameter;
-};
-
-std::vector<RawNode> facet_nodes(std::span<const Facet> facets, int degree) {
-    std::vector<RawNode> nodes;
-    for (const Facet& facet : facets)
-        for (const TriangleNode& t : triangle_rule(degree)) {
-            RawNode raw{{Vec3(0.0), facet.normal, t.weight * facet.area}, Vec2(0.0)};
-            for (std::size_t c = 0; c < 3; ++c) {
-                raw.node.position += t.barycentric[c] * facet.corners[c];
-                raw.parameter += t.barycentric[c] * facet.parameters[c];
-            }
-            nodes.push_back(raw);
-        }
-    return nodes;
-}
-
-std::vector<DomainPoint> domain_points(std::span<const RawNode> nodes) {
-    std::vector<DomainPoint> points;
-    points.reserve(nodes.size());
-    for (const RawNode& raw : nodes) points.push_back({raw.parameter, raw.node.weight});
-    return points;
-}
-
-// `count` nodes of equal weight at equal steps of the area of the facets.
-std::vector<RawNode> systematic_nodes(const ElementShape& shape, std::size_t count) {
-    std::vector<RawNode> all = facet_nodes(shape.facets, shape.facets.size() >= count ? 1 : 2);
-    if (all.size() <= count) return all;
-    std::vector<RawNode> chosen;
-    const double step = shape.area / static_cast<double>(count);
-    double sum = 0.0;
-    for (const RawNode& raw : all)
-        for (sum += raw.node.weight;
-             chosen.size() < count && sum > (static_cast<double>(chosen.size()) + 0.5) * step;) {
-            chosen.push_back(raw);
-            chosen.back().node.weight = step;
-        }
-    return chosen;
-}
-
-// A rule on a patch's element that is exact to `degree`, with few nodes however many facets there are.
-std::vector<RawNode> patch_nodes(const ElementShape& shape, int degree) {
-    std::vector<RawNode> exact = facet_nodes(shape.facets, degree);
-    const auto kept = compress_quadrature(domain_points(exact), degree);
-    if (!kept) return exact;
-    std::vector<RawNode> nodes;
-    for (const auto& [index, weight] : *kept) {
-        nodes.push_back(exact[index]);
-        nodes.back().node.weight = weight;
+std::vector<std::vector<Vec3>> outline_of(std::span<const Facet> facets) {
+    std::vector<std::array<Vec3, 3>> triangles;
+    for (const Facet& facet : facets) triangles.push_back(facet.corners);
+    std::vector<std::vector<Vec3>> outline;
+    for (const auto& loop : boundary_loops(triangles)) {
+        std::vector<Vec3> points, turns;
+        for (const TriangleCorner& at : loop) points.push_back(triangles[at.triangle][at.corner]);
+        for (const std::size_t i : turning_points(points, 0.0)) turns.push_back(points[i]);
+        if (turns.size() > 2) outline.push_back(turns);
     }
-    return nodes;
+    return outline;
 }
 
-NodeSet node_set(const Basis& basis, std::span<const RawNode> raw) {
-    NodeSet set;
-    set.basis.resize(raw.size() * basis.size());
-    for (std::size_t i = 0; i < raw.size(); ++i) {
-        set.nodes.push_back(raw[i].node);
-        basis.evaluate(raw[i].parameter, std::span(set.basis).subspan(i * basis.size(), basis.size()));
-    }
-    return set;
-}
-
-void set_basis_and_nodes(ElementShape& shape, int degree) {
-    shape.basis = Basis(domain_points(facet_nodes(shape.facets, 2 * degree)), degree);
-    if (shape.from_patch) {
-        const int fine_degree = shape.facets.size() <= few_facets ? 8 : 6;
-        shape.nodes = node_set(shape.basis, patch_nodes(shape, 2 * degree));
-        shape.fine_nodes = node_set(shape.basis, patch_nodes(shape, fine_degree));
-    } else {
-        shape.nodes = node_set(shape.basis, systematic_nodes(shape, cluster_nodes));
-        shape.fine_nodes = node_set(shape.basis, systematic_nodes(shape, 4 * cluster_nodes));
-    }
+void set_quadrature(ElementShape& shape, int degree) {
+    ElementQuadrature quadrature = element_quadrature(shape, degree);
+    shape.area = quadrature.area;
+    shape.basis = std::move(quadrature.basis);
+    shape.rules = std::move(quadrature.rules);
+    if (!shape.surface) return;
+    shape.mean_normal = mean_direction(quadrature.normal_area, shape.area);
+    shape.cone_cosine = curved_cone_cosine(shape);
 }
 
 } // namespace
@@ -192,8 +229,12 @@ std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const m
         if (shape.facets.empty())
             throw core::GeometryError("element " + std::to_string(e) +
                                       " has no area; run kinelux-clean first");
+        if (element.patch && is_curved(patches.patches[element.patch->value].surface))
+            shape.surface = patches.patches[element.patch->value].surface;
         set_bounds(shape);
-        set_basis_and_nodes(shape, element.patch ? degree : cluster_degree);
+        set_normals(shape);
+        if (shape.planar) shape.outline = outline_of(shape.facets);
+        set_quadrature(shape, element.patch ? degree : cluster_degree);
     });
     return shapes;
 }
@@ -204,21 +245,32 @@ ElementShape moved(const ElementShape& rest, const Pose& pose) {
         for (Vec3& corner : facet.corners) corner = pose.point(corner);
         facet.normal = pose.direction(facet.normal);
     }
-    for (NodeSet* set : {&shape.nodes, &shape.fine_nodes})
-        for (SurfaceNode& node : set->nodes) {
+    for (std::vector<Vec3>& loop : shape.outline)
+        for (Vec3& point : loop) point = pose.point(point);
+    if (rest.surface) shape.surface = moved(*rest.surface, pose);
+    for (NodeSet& set : shape.rules)
+        for (SurfaceNode& node : set.nodes) {
             node.position = pose.point(node.position);
             node.normal = pose.direction(node.normal);
         }
     shape.mean_normal = pose.direction(rest.mean_normal);
     shape.centre = pose.point(rest.centre);
-    shape.box_low = Vec3(std::numeric_limits<double>::infinity());
-    shape.box_high = -shape.box_low;
-    for (const Facet& facet : shape.facets)
-        for (const Vec3& corner : facet.corners) {
-            shape.box_low = glm::min(shape.box_low, corner);
-            shape.box_high = glm::max(shape.box_high, corner);
-        }
+    set_box(shape, extent_of(shape));
     return shape;
+}
+
+SurfaceNode node_at(const ElementShape& element, const Facet& facet, const std::array<double, 3>& barycentric,
+                    Vec2& parameter) {
+    const auto& p = facet.parameters;
+    parameter = barycentric[0] * p[0] + barycentric[1] * p[1] + barycentric[2] * p[2];
+    if (!element.surface) {
+        const auto& x = facet.corners;
+        return {barycentric[0] * x[0] + barycentric[1] * x[1] + barycentric[2] * x[2], facet.normal,
+                facet.area};
+    }
+    const SurfaceJet jet = evaluate(*element.surface, parameter);
+    const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0];
+    return {jet.position, jet.normal, 0.5 * jet.area_factor * std::abs(e1.x * e2.y - e1.y * e2.x)};
 }
 
 Vec2 facet_parameter(const Facet& facet, const Vec3& point) {

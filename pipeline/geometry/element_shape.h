@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,12 +16,13 @@
 
 namespace kinelux::geometry {
 
-/// A flat piece of an element with the parameters of its corners.
+/// A flat piece of an element with the parameters of its corners; on a curved patch the triangle between three points
+/// of the surface.
 struct Facet {
     std::array<Vec3, 3> corners;    ///< [m]
     std::array<Vec2, 3> parameters; ///< what the basis is evaluated at; linear on the facet
     Vec3 normal;                    ///< unit, to the front
-    double area;                    ///< [m2]
+    double area;                    ///< of the flat triangle [m2]
 };
 
 /// A node of an element's quadrature.
@@ -34,25 +36,35 @@ struct SurfaceNode {
 struct NodeSet {
     std::vector<SurfaceNode> nodes;
     std::vector<double> basis; ///< nodes x basis size: basis values at the nodes [1/m]
+    int exactness = 0; ///< total degree in the parameters up to which it is exact, with the area factor
 };
 
-/// An element as the transport kernel sees it: facets, basis and a ready quadrature, in world position.
+/// Rules of different exactness that every element has.
+constexpr std::size_t rule_levels = 3;
+
+/// An element as the transport kernel sees it: facets, basis and ready quadratures, in world position. Bounds and normal
+/// cone hold for the true surface.
 struct ElementShape {
     ElementId id;
     ObjectId object;
     MaterialId material;
-    bool planar = true;     ///< all facets in one plane: no exchange with itself
+    bool planar = true;     ///< all in one plane: no exchange with itself
     bool from_patch = true; ///< else a cluster
     std::vector<Facet> facets;
+    /// Boundary of a planar element: closed loops, counter-clockwise seen from the front, holes clockwise; empty where
+    /// the element is not planar [m]
+    std::vector<std::vector<Vec3>> outline;
+    std::optional<model::Surface> surface; ///< of a curved patch, in the position of the element
     Basis basis;
-    double area = 0.0;                ///< [m2]
+    double area = 0.0;                ///< [m2]; of the true surface
     Vec3 centre{0.0};                 ///< of the bounding sphere
     double radius = 0.0;              ///< of the bounding sphere [m]
     Vec3 box_low{0.0}, box_high{0.0}; ///< axis-aligned bounds
     Vec3 mean_normal{0.0};            ///< axis of the normal cone, unit
     double cone_cosine = 1.0;         ///< of the cone's half angle; 1 = flat, -1 = any direction
-    NodeSet nodes;                    ///< exact to degree 2 `degree` on patches; for distant partners
-    NodeSet fine_nodes;               ///< exact to degree 6 or more; for partners about one element away
+    /// On patches exact for polynomials of degree max(1, 2 d), 2 d + 3 and 2 d + 6, d = basis.degree(); on curved ones
+    /// the nodes lie on the true surface.
+    std::array<NodeSet, rule_levels> rules;
 };
 
 /// All elements at rest, in order of ElementId.
@@ -64,6 +76,15 @@ std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const m
 
 /// The same element elsewhere: positions, normals and bounds moved, parameters and basis untouched.
 ElementShape moved(const ElementShape& rest, const Pose& pose);
+
+/// A point of an element's true surface on or over a facet.
+/// @param barycentric  of the point in the facet's parameters, sum 1
+/// @param parameter    is set to what the basis is evaluated at
+/// @return  position, true normal, and as weight the area per share of the facet: the mean of the weight over the facet
+///          is the true area of its part of the element [m2]
+/// @throws GeometryError  a point where the surface has no normal
+SurfaceNode node_at(const ElementShape& element, const Facet& facet, const std::array<double, 3>& barycentric,
+                    Vec2& parameter);
 
 /// The basis parameter at a point of a facet, interpolated between its corners.
 Vec2 facet_parameter(const Facet& facet, const Vec3& point);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/basis.h"
+#include "geometry/legendre_frame.h"
 
 namespace kinelux::geometry {
 
@@ -19,6 +19,7 @@ struct KeptNode {
 /// A rule with a subset of the nodes and new positive weights that integrates every polynomial of total degree
 /// <= degree like the one given: at most basis_size(degree) nodes (Tchakaloff). Elements of many small triangles get as
 /// cheap as elements of two.
+/// @param degree  0..LegendreFrame::max_degree
 /// @return  nothing where the rule given is short already (less than 1.5 times that many nodes)
 /// @cite Piazzon, Sommariva, Vianello, Caratheodory-Tchakaloff subsampling, Dolomites Res. Notes Approx. 10 (2017)
 std::optional<std::vector<KeptNode>> compress_quadrature(std::span<const DomainPoint> rule, int degree);

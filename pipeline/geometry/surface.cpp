@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "geometry/quadrature.h"
 
 namespace kinelux::geometry {
 
@@ -22,6 +23,13 @@ struct Derivatives {
 
 Derivatives plane(const model::Surface& s, const Vec2& uv) {
     return {s.origin + uv.x * s.axis_u + uv.y * s.axis_v, s.axis_u, s.axis_v};
+}
+
+Derivatives bilinear(const model::Surface& s, const Vec2& uv) {
+    const auto& [a, b, c, d] = s.corners;
+    const double u = uv.x, v = uv.y;
+    return {(1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * d + u * c),
+            (1.0 - v) * (b - a) + v * (c - d), (1.0 - u) * (d - a) + u * (c - b)};
 }
 
 // Cylinders and cones: a circle of radius r(v) = radius + slope v, moved along axis_w.
@@ -134,6 +142,7 @@ Derivatives derivatives(const model::Surface& s, const Vec2& uv) {
     case model::SurfaceType::Sphere: return lathed_circle(s, uv, 0.0, s.radius);
     case model::SurfaceType::Torus: return lathed_circle(s, uv, s.radius, s.minor_radius);
     case model::SurfaceType::BSpline: return spline(s.bspline, uv);
+    case model::SurfaceType::Bilinear: return bilinear(s, uv);
     }
     throw core::GeometryError("a surface of unknown type");
 }
@@ -151,16 +160,49 @@ SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv) {
     return {d.x, (surface.orientation / area_factor) * across, area_factor};
 }
 
+Vec3 position(const model::Surface& surface, const Vec2& uv) { return derivatives(surface, uv).x; }
+
+model::Surface moved(const model::Surface& surface, const Pose& pose) {
+    model::Surface result = surface;
+    result.origin = pose.point(surface.origin);
+    for (Vec3 model::Surface::*axis :
+         {&model::Surface::axis_u, &model::Surface::axis_v, &model::Surface::axis_w})
+        result.*axis = pose.direction(surface.*axis);
+    for (Vec3& pole : result.bspline.poles) pole = pose.point(pole);
+    for (Vec3& corner : result.corners) corner = pose.point(corner);
+    return result;
+}
+
 Vec2 plane_parameters(const model::Surface& surface, const Vec3& x) {
     const Vec3 offset = x - surface.origin;
     return {glm::dot(offset, surface.axis_u), glm::dot(offset, surface.axis_v)};
 }
 
+namespace {
+
+// Degree of a triangle's rule for the area factor: constant on planes and cylinders, linear on cones; over half a turn of
+// v the cosine of spheres and tori is as good as a polynomial of degree 20.
+int area_degree(const model::Surface& surface) {
+    switch (surface.type) {
+    case model::SurfaceType::Plane:
+    case model::SurfaceType::Cylinder: return 0;
+    case model::SurfaceType::Cone: return 1;
+    default: return 20;
+    }
+}
+
+} // namespace
+
 double area(const model::Patch& patch) {
     double sum = 0.0;
     for (const model::Triangle& t : patch.triangles) {
         const Vec2 &p = patch.points[t[0]], a = patch.points[t[1]] - p, b = patch.points[t[2]] - p;
-        sum += 0.5 * std::abs(a.x * b.y - a.y * b.x) * evaluate(patch.surface, p + (a + b) / 3.0).area_factor;
+        double mean = 0.0;
+        for (const TriangleNode& node : triangle_rule(area_degree(patch.surface)))
+            mean +=
+                node.weight *
+                evaluate(patch.surface, p + node.barycentric[1] * a + node.barycentric[2] * b).area_factor;
+        sum += 0.5 * std::abs(a.x * b.y - a.y * b.x) * mean;
     }
     return sum;
 }

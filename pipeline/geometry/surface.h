@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
+#include "geometry/pose.h"
 #include "model/patch_set.h"
 
 namespace kinelux::geometry {
@@ -17,10 +18,18 @@ struct SurfaceJet {
 /// @throws GeometryError  a B-spline whose sizes do not fit, or a point where the surface has no normal
 SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv);
 
+/// Position alone, which every surface has also where it has no normal (poles, tips, collapsed edges) [m].
+/// @throws GeometryError  a B-spline whose sizes do not fit
+Vec3 position(const model::Surface& surface, const Vec2& uv);
+
+/// The same surface elsewhere: position(moved(s, pose), uv) = pose.point(position(s, uv)).
+model::Surface moved(const model::Surface& surface, const Pose& pose);
+
 /// Parameters of the point of a plane nearest to x. @param surface  a Plane
 Vec2 plane_parameters(const model::Surface& surface, const Vec3& x);
 
-/// Area of a patch [m2], by one node per triangle of its domain: exact on planes, cylinders and cones.
+/// Area of a patch [m2]: exact on planes, cylinders and cones, to rounding on spheres and tori whose triangles span half
+/// a turn of v or less, by a rule of degree 20 per triangle on the others.
 double area(const model::Patch& patch);
 /// Area of all small triangles [m2].
 double area(const model::SmallTriangles& small);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/case_hdf5.h"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -83,6 +84,19 @@ void set_numbers(model::Surface& surface, const double* n) {
     surface.orientation = n[15];
 }
 
+/// The corners that matter: none on surfaces of other types.
+std::vector<Vec3> own_corners(const model::Surface& surface) {
+    if (surface.type != model::SurfaceType::Bilinear) return {};
+    return {surface.corners.begin(), surface.corners.end()};
+}
+
+void set_corners(model::Surface& surface, const std::vector<Vec3>& corners, std::size_t patch) {
+    if (corners.size() != own_corners(surface).size())
+        throw core::FileError(fmt::format("patch {} has {} corners of a bilinear surface, not {}", patch,
+                                          corners.size(), own_corners(surface).size()));
+    std::copy(corners.begin(), corners.end(), surface.corners.begin());
+}
+
 void put_surfaces(Hdf5Writer& file, const std::vector<Patch>& patches) {
     std::vector<double> numbers;
     std::vector<std::uint32_t> shape;
@@ -95,6 +109,7 @@ void put_surfaces(Hdf5Writer& file, const std::vector<Patch>& patches) {
     file.dataset("patches/surface_type",
                  column<std::uint8_t>(patches, [](const Patch& p) { return p.surface.type; }));
     file.dataset("patches/surface", std::span<const double>(numbers), {count, surface_numbers});
+    put_lists(file, "bilinear/corners", patches, [](const Patch& p) { return own_corners(p.surface); });
     file.dataset("bsplines/shape", std::span<const std::uint32_t>(shape), {count, 4});
     put_lists(
         file, "bsplines/knots_u", patches, [](const Patch& p) -> auto& { return p.surface.bspline.knots_u; });
@@ -115,12 +130,14 @@ void get_surfaces(const Hdf5Reader& file, std::vector<Patch>& patches) {
     auto knots_v = get_lists<double>(file, "bsplines/knots_v", count);
     auto poles = split_lists(file, "bsplines/poles", count, file.points_3d("bsplines/poles"));
     auto weights = get_lists<double>(file, "bsplines/weights", count);
+    const auto corners = split_lists(file, "bilinear/corners", count, file.points_3d("bilinear/corners"));
     for (std::size_t p = 0; p < count; ++p) {
         model::Surface& surface = patches[p].surface;
-        if (type[p] > static_cast<std::uint8_t>(model::SurfaceType::BSpline))
+        if (type[p] > static_cast<std::uint8_t>(model::SurfaceType::Bilinear))
             throw core::FileError(fmt::format("patch {} has the unknown surface type {}", p, type[p]));
         surface.type = static_cast<model::SurfaceType>(type[p]);
         set_numbers(surface, numbers.data() + surface_numbers * p);
+        set_corners(surface, corners[p], p);
         surface.bspline = {.degree_u = shape[4 * p],
                            .degree_v = shape[4 * p + 1],
                            .count_u = shape[4 * p + 2],

@@ -217,18 +217,18 @@ void write_patches_view(const fs::path& file, const model::PatchSet& patches, co
     for (std::size_t p = 0; p < patches.patches.size(); ++p)
         add_patch(view, static_cast<std::int32_t>(p), patches.patches[p]);
     add_small(view, patches.small);
-    write_vtk(
-        file,
-        {.points = view.points,
-         .triangles = view.triangles,
-         .cell_arrays = {integers("PatchId", view.patches),
-                         integers("ObjectId", view.objects),
-                         integers("MaterialId", view.materials),
-                         integers("SurfaceType", view.types),
-                         {.name = "Deviation_m", .values = std::span<const double>(view.deviations)}},
-         .names = {{"ObjectNames", object_names(scene)},
-                   {"MaterialNames", material_names(scene)},
-                   {"SurfaceTypeNames", {"plane", "cylinder", "cone", "sphere", "torus", "B-spline"}}}});
+    write_vtk(file,
+              {.points = view.points,
+               .triangles = view.triangles,
+               .cell_arrays = {integers("PatchId", view.patches),
+                               integers("ObjectId", view.objects),
+                               integers("MaterialId", view.materials),
+                               integers("SurfaceType", view.types),
+                               {.name = "Deviation_m", .values = std::span<const double>(view.deviations)}},
+               .names = {{"ObjectNames", object_names(scene)},
+                         {"MaterialNames", material_names(scene)},
+                         {"SurfaceTypeNames",
+                          {"plane", "cylinder", "cone", "sphere", "torus", "B-spline", "bilinear"}}}});
 }
 
 void write_clusters_view(const fs::path& file, const model::ClusterTree& tree, const model::PatchSet& patches,

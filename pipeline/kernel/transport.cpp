@@ -6,9 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/sequence.h"
-#include "geometry/quadrature.h"
-#include "kernel/polygon_irradiance.h"
+#include "kernel/far_pair.h"
+#include "kernel/near_pair.h"
+#include "kernel/polygon_moments.h"
+#include "visibility/pair_blockers.h"
 
 namespace kinelux::kernel {
 
@@ -18,335 +19,10 @@ using geometry::ElementShape;
 using geometry::Facet;
 using geometry::NodeSet;
 using geometry::SurfaceNode;
-
-// eta = distance / size of the larger element. A pair is far from `far_eta` on for the coarse nodes, from `near_eta` on
-// for the fine nodes; below it is integrated adaptively. The errors are those of blocks relative to their size, the
-// a-priori part of TransportBlock::error: for tolerances from 1e-3 on the worst, rounded up, of 770 random pairs of
-// squares at degree 2 against the finest rule here; those of the finest rule itself are guesses, a tenth of the next.
-struct RuleLimits {
-    double far_eta, near_eta;
-    double node_error, near_error;
-};
-
-RuleLimits limits_for(double tolerance) {
-    if (tolerance >= 1e-2) return {1.0, 0.3, 1.6e-2, 7.5e-2};
-    if (tolerance >= 1e-3) return {2.0, 0.5, 1e-3, 1.3e-2};
-    return {4.0, 1.0, 1e-4, 1.3e-3};
-}
-
-// A pair that crosses the horizon of one of its elements has a kink in its integrand that no rule here follows. At a
-// tolerance of 1e-3 nine of ten of 825 such random pairs were off by less than this; a few small blocks by far more.
-constexpr double horizon_error = 0.2;
-
-double kernel_value(const SurfaceNode& x, const SurfaceNode& y) {
-    const Vec3 r = y.position - x.position;
-    const double cos_x = glm::dot(x.normal, r), cos_y = -glm::dot(y.normal, r);
-    if (!(cos_x > 0.0) || !(cos_y > 0.0)) return 0.0;
-    const double r2 = glm::dot(r, r);
-    return cos_x * cos_y / (std::numbers::pi * r2 * r2);
-}
-
-double box_distance(const ElementShape& a, const ElementShape& b) {
-    const Vec3 gap = glm::max(Vec3(0.0), glm::max(a.box_low - b.box_high, b.box_low - a.box_high));
-    const double spheres = glm::distance(a.centre, b.centre) - a.radius - b.radius;
-    return std::max(glm::length(gap), spheres);
-}
-
-// Which share of a pair sees each other.
-enum class Sight : std::uint8_t { Clear, Partial, Hidden };
-
-class PairSight {
-public:
-    PairSight(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
-              const TransportOptions& options)
-        : occluders_(occluders), among_(options.occluders) {
-        if (options.occlusion && !occluders.empty()) probe(a, b, options);
-    }
-
-    Sight sight() const { return sight_; }
-    std::uint32_t rays() const { return rays_; }
-    double visible_share() const { return visible_share_; }
-
-    /// 1 or 0 where the pair is partly hidden, always 1 where it is clear.
-    bool visible(const Vec3& x, const Vec3& y) {
-        if (sight_ == Sight::Clear) return true;
-        ++rays_;
-        return !occluders_.occluded(x, y, among_);
-    }
-
-    /// Rays to all pairs of facing nodes at once. @param kernel  a.size x b.size; set to 0 where hidden
-    void mask(std::span<const SurfaceNode> a, std::span<const SurfaceNode> b, std::span<double> kernel) {
-        if (sight_ == Sight::Clear) return;
-        thread_local std::vector<visibility::Segment> segments;
-        thread_local std::vector<std::size_t> indices;
-        thread_local std::vector<std::uint8_t> blocked;
-        segments.clear();
-        indices.clear();
-        for (std::size_t k = 0; k < kernel.size(); ++k)
-            if (kernel[k] > 0.0) {
-                segments.push_back({a[k / b.size()].position, b[k % b.size()].position});
-                indices.push_back(k);
-            }
-        blocked.assign(segments.size(), 0);
-        occluders_.occluded(segments, blocked, among_);
-        rays_ += static_cast<std::uint32_t>(segments.size());
-        for (std::size_t s = 0; s < segments.size(); ++s)
-            if (blocked[s] != 0) kernel[indices[s]] = 0.0;
-    }
-
-private:
-    // Probes run between nodes of the two elements that face each other, paired by a scrambled sequence so that both
-    // elements are covered evenly. Only where they disagree are visibility rays spent at every node pair.
-    void probe(const ElementShape& a, const ElementShape& b, const TransportOptions& options) {
-        const auto& xs = a.fine_nodes.nodes;
-        const auto& ys = b.fine_nodes.nodes;
-        const std::uint64_t seed = core::mix(options.seed, core::mix(a.id.value, b.id.value));
-        std::vector<visibility::Segment> segments;
-        const int attempts = 2 * options.probe_rays;
-        for (int k = 0; k < attempts && static_cast<int>(segments.size()) < options.probe_rays; ++k) {
-            const Vec2 s = core::sobol_2d(static_cast<std::uint32_t>(k), seed);
-            const SurfaceNode& x = xs[static_cast<std::size_t>(s.x * static_cast<double>(xs.size()))];
-            const SurfaceNode& y = ys[static_cast<std::size_t>(s.y * static_cast<double>(ys.size()))];
-            if (kernel_value(x, y) > 0.0) segments.push_back({x.position, y.position});
-        }
-        std::vector<std::uint8_t> blocked(segments.size());
-        occluders_.occluded(segments, blocked, among_);
-        rays_ += static_cast<std::uint32_t>(segments.size());
-        const auto hidden =
-            static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), std::uint8_t{1}));
-        if (segments.empty() || (hidden > 0 && hidden < segments.size()))
-            sight_ = Sight::Partial;
-        else
-            sight_ = hidden == 0 ? Sight::Clear : Sight::Hidden;
-        if (!segments.empty())
-            visible_share_ = 1.0 - static_cast<double>(hidden) / static_cast<double>(segments.size());
-    }
-
-    const visibility::Occluders& occluders_;
-    visibility::Among among_;
-    Sight sight_ = Sight::Clear;
-    double visible_share_ = 1.0;
-    std::uint32_t rays_ = 0;
-};
-
-// values(k,l) = sum over node pairs of w_x phi_k(x) K(x,y) w_y phi_l(y).
-void add_node_product(const ElementShape& a, const NodeSet& xs, const ElementShape& b, const NodeSet& ys,
-                      PairSight& sight, std::vector<double>& values) {
-    const std::size_t na = a.basis.size(), nb = b.basis.size();
-    const std::size_t rows = xs.nodes.size(), columns = ys.nodes.size();
-    thread_local std::vector<double> kernel;
-    kernel.resize(rows * columns);
-    for (std::size_t i = 0; i < rows; ++i)
-        for (std::size_t j = 0; j < columns; ++j)
-            kernel[i * columns + j] = kernel_value(xs.nodes[i], ys.nodes[j]);
-    sight.mask(xs.nodes, ys.nodes, kernel);
-
-    std::array<double, geometry::basis_size(geometry::max_degree)> gathered;
-    for (std::size_t i = 0; i < rows; ++i) {
-        std::fill_n(gathered.begin(), nb, 0.0);
-        for (std::size_t j = 0; j < columns; ++j) {
-            const double weight = kernel[i * columns + j] * ys.nodes[j].weight;
-            if (weight > 0.0)
-                for (std::size_t l = 0; l < nb; ++l) gathered[l] += weight * ys.basis[j * nb + l];
-        }
-        for (std::size_t k = 0; k < na; ++k)
-            for (std::size_t l = 0; l < nb; ++l)
-                values[k * nb + l] += xs.nodes[i].weight * xs.basis[i * na + k] * gathered[l];
-    }
-}
-
-double longest_edge(const Facet& facet) {
-    return std::max({glm::distance(facet.corners[0], facet.corners[1]),
-                     glm::distance(facet.corners[1], facet.corners[2]),
-                     glm::distance(facet.corners[2], facet.corners[0])});
-}
-
-std::array<Facet, 4> split(const Facet& facet) {
-    const auto& p = facet.corners;
-    const auto& q = facet.parameters;
-    const std::array<Vec3, 3> mp{0.5 * (p[0] + p[1]), 0.5 * (p[1] + p[2]), 0.5 * (p[2] + p[0])};
-    const std::array<Vec2, 3> mq{0.5 * (q[0] + q[1]), 0.5 * (q[1] + q[2]), 0.5 * (q[2] + q[0])};
-    const double quarter = 0.25 * facet.area;
-    return {Facet{{p[0], mp[0], mp[2]}, {q[0], mq[0], mq[2]}, facet.normal, quarter},
-            Facet{{mp[0], p[1], mp[1]}, {mq[0], q[1], mq[1]}, facet.normal, quarter},
-            Facet{{mp[2], mp[1], p[2]}, {mq[2], mq[1], q[2]}, facet.normal, quarter},
-            Facet{{mp[0], mp[1], mp[2]}, {mq[0], mq[1], mq[2]}, facet.normal, quarter}};
-}
-
-// A facet as part of the tree by which the inner integral refines: halves of halves, made when first visited, with the
-// nodes and basis values that every outer point uses again.
-struct Part {
-    Facet facet;
-    Vec3 centroid;
-    double edge;
-    std::size_t first_child = 0; ///< 0: not split yet
-    NodeSet nodes;               ///< empty: not visited yet
-};
-
-// How far refinement goes for a tolerance: parts of an element's diameter, and degrees of the rules.
-struct NearLimits {
-    double outer_parts, inner_parts;
-    int outer_degree, inner_degree;
-};
-
-NearLimits near_limits_for(double tolerance) {
-    if (tolerance >= 1e-2) return {2.0, 4.0, 4, 2};
-    if (tolerance >= 1e-3) return {4.0, 8.0, 4, 4};
-    return {8.0, 16.0, 8, 5};
-}
-
-// Transport between elements that are close to each other or touch: the outer integral over facets of a, refined
-// towards b; the inner one over facets of b, refined towards the outer point, with the exact configuration factor where
-// refinement stops. So the constant term is exact in the inner integral, and no singular integrand is ever sampled.
-class NearPair {
-public:
-    NearPair(const ElementShape& a, const ElementShape& b, const TransportOptions& options, PairSight& sight)
-        : a_(a),
-          b_(b),
-          sight_(sight),
-          limits_(near_limits_for(tolerance_for(options, sight))),
-          gathered_(b.basis.size()),
-          outer_phi_(a.basis.size()) {
-        for (const Facet& facet : b.facets) parts_.push_back(make_part(facet));
-    }
-
-    void add_to(std::vector<double>& values) {
-        for (const Facet& facet : a_.facets) outer(facet, values);
-    }
-
-private:
-    // Where rays decide, their sampling error is the larger one: a finer quadrature would only cost rays.
-    static double tolerance_for(const TransportOptions& options, const PairSight& sight) {
-        return sight.sight() == Sight::Partial ? std::max(options.tolerance, partial_tolerance)
-                                               : options.tolerance;
-    }
-
-    static constexpr double partial_tolerance = 1e-2;
-    static constexpr double outer_ratio = 1.0; ///< largest edge / distance without refinement
-    static constexpr double inner_ratio = 0.7;
-    static constexpr std::size_t most_nodes = 7; ///< of the inner rules, of degree 5 or less
-    static constexpr double point_ratio = 0.1;   ///< below it one node is enough
-
-    static Part make_part(const Facet& facet) {
-        return {facet,
-                (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3.0,
-                longest_edge(facet),
-                0,
-                {}};
-    }
-
-    void outer(const Facet& facet, std::vector<double>& values) {
-        const Vec3 centroid = (facet.corners[0] + facet.corners[1] + facet.corners[2]) / 3.0;
-        const double edge = longest_edge(facet);
-        const Vec3 gap = glm::max(Vec3(0.0), glm::max(b_.box_low - centroid, centroid - b_.box_high));
-        const double distance = std::max(glm::length(gap) - 0.667 * edge, 0.0);
-        if (edge > outer_ratio * distance && edge * limits_.outer_parts > 2.0 * a_.radius) {
-            for (const Facet& part : split(facet)) outer(part, values);
-            return;
-        }
-        const std::size_t facets = b_.facets.size();
-        for (const geometry::TriangleNode& node :
-             geometry::triangle_rule(edge < point_ratio * distance ? 1 : limits_.outer_degree)) {
-            Vec3 x(0.0);
-            Vec2 parameter(0.0);
-            for (std::size_t c = 0; c < 3; ++c) {
-                x += node.barycentric[c] * facet.corners[c];
-                parameter += node.barycentric[c] * facet.parameters[c];
-            }
-            std::fill(gathered_.begin(), gathered_.end(), 0.0);
-            for (std::size_t part = 0; part < facets; ++part) inner({x, facet.normal, 0.0}, part);
-            a_.basis.evaluate(parameter, outer_phi_);
-            for (std::size_t k = 0; k < outer_phi_.size(); ++k)
-                for (std::size_t l = 0; l < gathered_.size(); ++l)
-                    values[k * gathered_.size() + l] +=
-                        node.weight * facet.area * outer_phi_[k] * gathered_[l];
-        }
-    }
-
-    // Adds the integral over a part of b of K(x, y) V phi(y) to gathered_.
-    void inner(const SurfaceNode& x, std::size_t index) {
-        const Facet& facet = parts_[index].facet;
-        const double height = glm::dot(facet.normal, x.position - facet.corners[0]);
-        if (height <= 0.0) return;
-        if (std::all_of(facet.corners.begin(), facet.corners.end(),
-                        [&](const Vec3& corner) { return glm::dot(x.normal, corner - x.position) <= 0.0; }))
-            return;
-        const double edge = parts_[index].edge;
-        const double distance =
-            std::max(height, glm::distance(x.position, parts_[index].centroid) - 0.667 * edge);
-        if (edge < inner_ratio * distance) {
-            add_nodes(x, index);
-        } else if (edge * limits_.inner_parts <= 2.0 * b_.radius) {
-            add_closed_form(x, index);
-        } else {
-            if (parts_[index].first_child == 0) split_part(index);
-            for (std::size_t child = 0; child < 4; ++child) inner(x, parts_[index].first_child + child);
-        }
-    }
-
-    void split_part(std::size_t index) {
-        const std::array<Facet, 4> children = split(parts_[index].facet);
-        parts_[index].first_child = parts_.size();
-        for (const Facet& child : children) parts_.push_back(make_part(child));
-    }
-
-    void add_nodes(const SurfaceNode& x, std::size_t index) {
-        NodeSet& set = parts_[index].nodes;
-        if (set.nodes.empty()) set = nodes_of(parts_[index].facet);
-        const std::size_t n = gathered_.size();
-        for (std::size_t i = 0; i < set.nodes.size(); ++i) {
-            const double value = kernel_value(x, set.nodes[i]) * set.nodes[i].weight;
-            if (value > 0.0 && sight_.visible(x.position, set.nodes[i].position))
-                for (std::size_t l = 0; l < n; ++l) gathered_[l] += value * set.basis[i * n + l];
-        }
-    }
-
-    NodeSet nodes_of(const Facet& facet) const {
-        NodeSet set;
-        const auto rule =
-            geometry::triangle_rule(longest_edge(facet) < point_ratio * b_.radius ? 1 : limits_.inner_degree);
-        set.basis.resize(rule.size() * gathered_.size());
-        for (std::size_t i = 0; i < rule.size(); ++i) {
-            SurfaceNode y{Vec3(0.0), facet.normal, rule[i].weight * facet.area};
-            Vec2 parameter(0.0);
-            for (std::size_t c = 0; c < 3; ++c) {
-                y.position += rule[i].barycentric[c] * facet.corners[c];
-                parameter += rule[i].barycentric[c] * facet.parameters[c];
-            }
-            set.nodes.push_back(y);
-            b_.basis.evaluate(parameter,
-                              std::span(set.basis).subspan(i * gathered_.size(), gathered_.size()));
-        }
-        return set;
-    }
-
-    // The exact factor of the part, spread over its nodes in proportion to the kernel there: exact for the constant, and
-    // for the rest as good as the mean of the basis under the kernel's shape.
-    void add_closed_form(const SurfaceNode& x, std::size_t index) {
-        Part& part = parts_[index];
-        const double factor = point_to_polygon(x.position, x.normal, part.facet.corners);
-        if (!(factor > 0.0) || !sight_.visible(x.position, part.centroid)) return;
-        if (part.nodes.nodes.empty()) part.nodes = nodes_of(part.facet);
-        const NodeSet& set = part.nodes;
-        const std::size_t n = gathered_.size();
-        std::array<double, most_nodes> shares;
-        double sum = 0.0;
-        for (std::size_t i = 0; i < set.nodes.size(); ++i)
-            sum += shares[i] = kernel_value(x, set.nodes[i]) * set.nodes[i].weight;
-        for (std::size_t i = 0; i < set.nodes.size(); ++i) {
-            const double share =
-                factor * (sum > 0.0 ? shares[i] / sum : set.nodes[i].weight / part.facet.area);
-            for (std::size_t l = 0; l < n; ++l) gathered_[l] += share * set.basis[i * n + l];
-        }
-    }
-
-    const ElementShape& a_;
-    const ElementShape& b_;
-    PairSight& sight_;
-    NearLimits limits_;
-    std::vector<Part> parts_;
-    std::vector<double> gathered_, outer_phi_;
-};
+using visibility::HalfSpace;
+using visibility::Loops2;
+using visibility::Loops3;
+using visibility::Sight;
 
 double frobenius_norm(std::span<const double> values) {
     double sum = 0.0;
@@ -354,33 +30,315 @@ double frobenius_norm(std::span<const double> values) {
     return std::sqrt(sum);
 }
 
-// Whether b has a point in front of the plane of a planar element.
-bool in_front_of(const ElementShape& planar, const ElementShape& other) {
-    const Vec3& origin = planar.facets.front().corners[0];
-    const double height = glm::dot(planar.mean_normal, other.centre - origin);
-    const double margin = 1e-9 * (planar.radius + other.radius);
-    if (height + other.radius <= margin) return false;
-    if (height - other.radius > margin) return true;
-    for (const Facet& facet : other.facets)
-        for (const Vec3& corner : facet.corners)
-            if (glm::dot(planar.mean_normal, corner - origin) > margin) return true;
-    return false;
+HalfSpace front_of(const ElementShape& planar) {
+    const Facet& facet = planar.facets.front();
+    return {facet.normal, glm::dot(facet.normal, facet.corners[0])};
+}
+
+// What reaches less than this far over a horizon, relative to the pair's size, counts as below it.
+constexpr double horizon_slack = 1e-12;
+
+Loops3 cut_to_front(const std::vector<std::vector<Vec3>>& loops, const HalfSpace& front, double slack) {
+    Loops3 result;
+    visibility::LoopCutter<Vec3> cutter;
+    for (const auto& loop : loops) {
+        cutter.begin(loop);
+        cutter.keep([&](const Vec3& point) { return front.distance(point) - slack; });
+        if (cutter.loop().size() >= 3) result.add(cutter.loop());
+    }
+    return result;
 }
 
 // Whether the plane of a planar element cuts the other one.
 bool crosses_horizon(const ElementShape& planar, const ElementShape& other) {
-    if (!planar.planar) return false;
-    const Vec3& origin = planar.facets.front().corners[0];
-    const double margin = 1e-3 * other.radius; // less than this share beyond the horizon does not count
-    if (std::abs(glm::dot(planar.mean_normal, other.centre - origin)) > other.radius + margin) return false;
-    bool above = false, below = false;
+    const HalfSpace front = front_of(planar);
+    const double slack = horizon_slack * (planar.radius + other.radius);
+    if (front.distance(other.centre) >= other.radius) return false;
     for (const Facet& facet : other.facets)
-        for (const Vec3& corner : facet.corners) {
-            const double height = glm::dot(planar.mean_normal, corner - origin);
-            above = above || height > margin;
-            below = below || height < -margin;
+        for (const Vec3& corner : facet.corners)
+            if (front.distance(corner) < -slack) return true;
+    return false;
+}
+
+Vec2 barycentric(const Facet& facet, const Vec3& point) {
+    const Vec3 e1 = facet.corners[1] - facet.corners[0], e2 = facet.corners[2] - facet.corners[0];
+    const Vec3 d = point - facet.corners[0];
+    return {glm::dot(glm::cross(d, e2), facet.normal) / (2.0 * facet.area),
+            glm::dot(glm::cross(e1, d), facet.normal) / (2.0 * facet.area)};
+}
+
+// Convex pieces of a planar element in front of another one's plane.
+std::vector<OuterPiece> pieces_in_front(const ElementShape& a, const HalfSpace& front, double slack) {
+    const bool whole = a.outline.size() == 1 && visibility::is_convex(a.outline.front(), a.facets.front().normal, 1e-12);
+    std::vector<OuterPiece> pieces;
+    visibility::LoopCutter<Vec3> cutter;
+    const auto add = [&](std::span<const Vec3> loop, const Facet& facet) {
+        cutter.begin(loop);
+        cutter.keep([&](const Vec3& point) { return front.distance(point) - slack; });
+        if (cutter.loop().size() < 3) return;
+        pieces.push_back({&facet, {}});
+        for (const Vec3& point : cutter.loop()) pieces.back().corners.push_back(barycentric(facet, point));
+    };
+    if (whole) add(a.outline.front(), a.facets.front());
+    else
+        for (const Facet& facet : a.facets) add(facet.corners, facet);
+    return pieces;
+}
+
+// All of a polygon is visible.
+class WholePolygon : public PointGather {
+public:
+    WholePolygon(const ElementShape& b, const Loops3& loops, double tolerance)
+        : moments_(b.facets.front(), b.basis), tolerance_(tolerance) {
+        moments_.to_plane(loops, flat_);
+    }
+    void gather(const SurfaceNode& x, std::span<double> values) override {
+        moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+    }
+
+private:
+    PolygonMoments moments_;
+    Loops2 flat_;
+    double tolerance_;
+};
+
+// A few polygons stand before it.
+class PartlyHiddenPolygon : public PointGather {
+public:
+    PartlyHiddenPolygon(const ElementShape& b, const Loops3& loops,
+                        std::span<const visibility::PlanarBlocker> blockers, double tolerance)
+        : moments_(b.facets.front(), b.basis),
+          loops_(loops),
+          normal_(b.facets.front().normal),
+          blockers_(blockers),
+          tolerance_(tolerance) {}
+    void gather(const SurfaceNode& x, std::span<double> values) override {
+        moments_.to_plane(visible_.from(x.position, loops_, normal_, blockers_), flat_);
+        moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+    }
+
+private:
+    PolygonMoments moments_;
+    const Loops3& loops_;
+    Vec3 normal_;
+    std::span<const visibility::PlanarBlocker> blockers_;
+    double tolerance_;
+    visibility::VisiblePolygon visible_;
+    Loops2 flat_;
+};
+
+// Rays from a point to the nodes of an element.
+class Rays {
+public:
+    Rays(const visibility::Occluders& occluders, const TransportOptions& options, bool needed)
+        : occluders_(occluders), among_(options.occluders), needed_(needed) {}
+
+    /// Sets the kernel to 0 where something stands between. @param kernel  one per node
+    void mask(const SurfaceNode& x, const NodeSet& ys, std::span<double> kernel) {
+        if (!needed_) return;
+        for (std::size_t j = 0; j < kernel.size(); ++j) {
+            if (!(kernel[j] > 0.0)) continue;
+            ++cast_;
+            if (!occluders_.occluded(x.position, ys.nodes[j].position, among_)) continue;
+            kernel[j] = 0.0;
+            ++blocked_;
         }
-    return above && below;
+    }
+    std::uint32_t cast() const { return cast_; }
+
+    /// Standard deviation of the visible share as sampled [1].
+    double share_error() const {
+        if (cast_ == 0) return 0.0;
+        const double n = cast_, blocked = blocked_ / n;
+        return std::sqrt(std::max(blocked * (1.0 - blocked), 1.0 / (n + 1.0)) / n);
+    }
+
+private:
+    const visibility::Occluders& occluders_;
+    visibility::Among among_;
+    bool needed_;
+    std::uint32_t cast_ = 0, blocked_ = 0;
+};
+
+// Rays to nodes of a polygon say which share of it each outer point sees, the moments of all of it are exact: what it
+// receives is right wherever the polygon is wholly visible or wholly hidden.
+class SampledPolygon : public PointGather {
+public:
+    SampledPolygon(const ElementShape& b, const Loops3& loops, Rays& rays, double tolerance)
+        : whole_(b, loops, tolerance), b_(b), rays_(rays), exact_(b.basis.size()) {}
+    void gather(const SurfaceNode& x, std::span<double> values) override {
+        const NodeSet& ys = b_.rules[1];
+        whole_.gather(x, values);
+        std::copy(values.begin(), values.end(), exact_.begin());
+        kernel_.resize(ys.nodes.size());
+        for (std::size_t j = 0; j < kernel_.size(); ++j) kernel_[j] = kernel_value(x, ys.nodes[j]);
+        seen_ = kernel_;
+        rays_.mask(x, ys, seen_);
+        double all = 0.0, visible = 0.0;
+        for (std::size_t j = 0; j < kernel_.size(); ++j) {
+            all += kernel_[j] * ys.nodes[j].weight;
+            visible += seen_[j] * ys.nodes[j].weight;
+        }
+        if (!(all > 0.0)) return;
+        // exact * share, plus what the nodes say beyond that, scaled to the exact constant.
+        const double share = visible / all;
+        const double scale = values[0] / (all * ys.basis[0]);
+        for (std::size_t l = 0; l < values.size(); ++l) values[l] = share * exact_[l];
+        for (std::size_t j = 0; j < kernel_.size(); ++j) {
+            const double weight = scale * ys.nodes[j].weight * (seen_[j] - share * kernel_[j]);
+            for (std::size_t l = 0; l < values.size(); ++l) values[l] += weight * ys.basis[j * values.size() + l];
+        }
+    }
+
+private:
+    WholePolygon whole_;
+    const ElementShape& b_;
+    Rays& rays_;
+    std::vector<double> exact_, kernel_, seen_;
+};
+
+// One pair on its way through the rules.
+class PairTransport {
+public:
+    PairTransport(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
+                  const TransportOptions& options)
+        : a_(a), b_(b), occluders_(occluders), options_(options) {}
+
+    TransportBlock block() {
+        block_.values.assign(a_.basis.size() * b_.basis.size(), 0.0);
+        const Sight sight = look();
+        if (sight == Sight::Hidden) return {};
+        const bool flat = a_.planar && b_.planar;
+        const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_));
+        const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
+        if (!flat && !rule) by_nodes(sight);
+        else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper())) near(sight);
+        else far(*rule, sight);
+        return finished();
+    }
+
+private:
+    Sight look() {
+        if (!options_.occlusion || occluders_.empty()) return Sight::Clear;
+        return blockers_.between(visibility::shaft_end(a_), visibility::shaft_end(b_), occluders_.polygons(),
+                                 options_.occluders, options_.most_blockers);
+    }
+
+    // Sampled visibility is off by half the root of the number of rays; clipping by less than its outer rule's tolerance.
+    double rays_for_sight() const { return 0.25 / (options_.sight_tolerance * options_.sight_tolerance); }
+
+    // Predicted times [us], as measured by kernel_bench.
+    bool clipping_is_cheaper() const {
+        if (!options_.exact_sight) return false;
+        constexpr double per_ray = 0.15, per_point = 1.5, per_blocker = 0.7, points = 20.0;
+        const auto blockers = static_cast<double>(blockers_.blockers().size());
+        return points * (per_point + per_blocker * blockers) < per_ray * rays_for_sight();
+    }
+
+    void far(const FarRule& rule, Sight sight) {
+        std::size_t level_a = rule.level_a, level_b = rule.level_b;
+        const auto rays = [&] { return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size()); };
+        while (sight != Sight::Clear && rays() < rays_for_sight()) {
+            const bool a_next = level_a <= level_b;
+            if ((a_next ? level_a : level_b) + 1 == geometry::rule_levels) break;
+            ++(a_next ? level_a : level_b);
+        }
+        node_product(a_.rules[level_a], b_.rules[level_b], sight);
+        block_.error = std::hypot(block_.error, rule.error);
+    }
+
+    // Where no rule for curved or scattered elements that are close applies: the finest nodes, and a guess.
+    void by_nodes(Sight sight) {
+        node_product(a_.rules.back(), b_.rules.back(), sight);
+        block_.error = std::hypot(block_.error, nodes_guess * frobenius_norm(block_.values));
+    }
+
+    void node_product(const NodeSet& xs, const NodeSet& ys, Sight sight) {
+        Rays rays(occluders_, options_, sight != Sight::Clear);
+        thread_local std::vector<double> kernel;
+        const std::size_t columns = ys.nodes.size();
+        kernel.resize(xs.nodes.size() * columns);
+        for (std::size_t i = 0; i < xs.nodes.size(); ++i) {
+            const std::span<double> row(&kernel[i * columns], columns);
+            for (std::size_t j = 0; j < columns; ++j) row[j] = kernel_value(xs.nodes[i], ys.nodes[j]);
+            rays.mask(xs.nodes[i], ys, row);
+        }
+        add_node_product(xs, a_.basis.size(), ys, b_.basis.size(), kernel, block_.values);
+        block_.rays += rays.cast();
+        block_.error = rays.share_error() * frobenius_norm(block_.values);
+    }
+
+    // The inner integral is exact on the larger polygon, the outer one runs over the smaller.
+    void near(Sight sight) {
+        const bool swapped = a_.radius > b_.radius;
+        const ElementShape& outer = swapped ? b_ : a_;
+        const ElementShape& inner = swapped ? a_ : b_;
+        const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);
+        const double slack = horizon_slack * (a_.radius + b_.radius);
+        const Loops3 loops = cut_to_front(inner.outline, outer_front, slack);
+        const std::vector<OuterPiece> pieces = pieces_in_front(outer, inner_front, slack);
+        if (loops.empty() || pieces.empty()) return;
+        const InnerPolygon polygon{loops, inner.facets.front().corners[0], inner_front.normal};
+        const double gather_tolerance = gather_share * options_.tolerance;
+        OuterOptions outer_options{.tolerance = options_.tolerance, .polygon = &polygon, .refine = false};
+        OuterResult result;
+        if (sight == Sight::Clear) {
+            WholePolygon gather(inner, loops, gather_tolerance);
+            result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
+        } else if (sight == Sight::Few && options_.exact_sight) {
+            outer_options.tolerance = options_.sight_tolerance;
+            outer_options.refine = true;
+            outer_options.floor = 0.1 * std::sqrt(outer.area / inner.area);
+            outer_options.most_points = 4000;
+            PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(), gather_share * options_.sight_tolerance);
+            result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
+        } else {
+            Rays rays(occluders_, options_, true);
+            outer_options.tolerance = std::max(options_.tolerance, sampled_tolerance);
+            SampledPolygon gather(inner, loops, rays, gather_tolerance);
+            result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
+            block_.rays += rays.cast();
+            result.error = std::hypot(result.error, rays.share_error() * frobenius_norm(result.values));
+        }
+        store(result, swapped);
+    }
+
+    void store(const OuterResult& result, bool transposed) {
+        block_.error = result.error;
+        const std::size_t na = a_.basis.size(), nb = b_.basis.size();
+        for (std::size_t k = 0; k < na; ++k)
+            for (std::size_t l = 0; l < nb; ++l)
+                block_.values[k * nb + l] = transposed ? result.values[l * na + k] : result.values[k * nb + l];
+    }
+
+    TransportBlock finished() {
+        if (!(frobenius_norm(block_.values) > 0.0)) return {.rays = block_.rays};
+        return std::move(block_);
+    }
+
+    static constexpr double gather_share = 0.1;      ///< of the tolerance for the inner integrals
+    static constexpr double sampled_tolerance = 1e-2; ///< finer outer quadrature would only cost rays
+    static constexpr double nodes_guess = 0.1;
+
+    const ElementShape& a_;
+    const ElementShape& b_;
+    const visibility::Occluders& occluders_;
+    const TransportOptions& options_;
+    visibility::PairBlockers blockers_;
+    TransportBlock block_;
+};
+
+// Whether b has a point in front of the plane of a planar element.
+bool in_front_of(const ElementShape& planar, const ElementShape& other) {
+    const HalfSpace front = front_of(planar);
+    const double slack = horizon_slack * (planar.radius + other.radius);
+    const double height = front.distance(other.centre);
+    if (height + other.radius <= slack) return false;
+    if (height - other.radius > slack) return true;
+    for (const Facet& facet : other.facets)
+        for (const Vec3& corner : facet.corners)
+            if (front.distance(corner) > slack) return true;
+    return other.surface.has_value();
 }
 
 // Whether some normal in a's cone can make an acute angle with some direction from a to b.
@@ -404,46 +362,8 @@ bool may_exchange(const ElementShape& a, const ElementShape& b) {
 
 TransportBlock transport(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
                          const TransportOptions& options) {
-    TransportBlock block;
-    if (!may_exchange(a, b)) return block;
-    PairSight sight(a, b, occluders, options);
-    block.rays = sight.rays();
-    if (sight.sight() == Sight::Hidden) return block;
-
-    const RuleLimits limits = limits_for(options.tolerance);
-    const double eta = box_distance(a, b) / (2.0 * std::max(a.radius, b.radius));
-    const std::size_t na = a.basis.size(), nb = b.basis.size();
-    block.values.assign(na * nb, 0.0);
-    double rule_error = limits.near_error;
-    if (eta >= limits.far_eta) {
-        add_node_product(a, a.nodes, b, b.nodes, sight, block.values);
-        rule_error = limits.node_error;
-    } else if (eta >= limits.near_eta) {
-        add_node_product(a, a.fine_nodes, b, b.fine_nodes, sight, block.values);
-        rule_error = limits.node_error;
-    } else if (a.radius <= b.radius) {
-        NearPair(a, b, options, sight).add_to(block.values);
-    } else {
-        std::vector<double> transposed(na * nb, 0.0);
-        NearPair(b, a, options, sight).add_to(transposed);
-        for (std::size_t k = 0; k < na; ++k)
-            for (std::size_t l = 0; l < nb; ++l) block.values[k * nb + l] = transposed[l * na + k];
-    }
-    block.rays = sight.rays();
-    if (crosses_horizon(a, b) || crosses_horizon(b, a)) rule_error = horizon_error;
-
-    const double size = frobenius_norm(block.values);
-    if (!(size > 0.0)) {
-        block.values.clear();
-        return block;
-    }
-    // The share that V cuts off is sampled by the rays between all nodes of the rule used.
-    const double samples = static_cast<double>(std::max(1u, sight.rays()));
-    const double share = sight.visible_share();
-    const double sight_error =
-        sight.sight() == Sight::Partial ? std::sqrt(std::max(share * (1.0 - share), 0.05) / samples) : 0.0;
-    block.error = size * std::hypot(rule_error, sight_error);
-    return block;
+    if (!may_exchange(a, b)) return {};
+    return PairTransport(a, b, occluders, options).block();
 }
 
 } // namespace kinelux::kernel

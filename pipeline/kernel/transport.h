@@ -11,10 +11,11 @@
 namespace kinelux::kernel {
 
 struct TransportOptions {
-    double tolerance = 1e-3; ///< of a block, relative to its size [1], 1e-6..0.1
-    int probe_rays =
-        16; ///< a pair whose probes all agree is taken as wholly visible or wholly hidden, 4..256
-    bool occlusion = true;                                ///< false: nothing stands between any pair
+    double tolerance = 1e-3;       ///< of a block with nothing in between, relative to its size [1], 1e-9..0.1
+    double sight_tolerance = 1e-2; ///< of a block with something in between [1], tolerance..0.1
+    bool occlusion = true;         ///< false: nothing stands between any pair
+    bool exact_sight = true;       ///< visible parts of polygons by clipping where few polygons can hide them
+    std::size_t most_blockers = 6; ///< few, for exact_sight
     visibility::Among occluders = visibility::Among::All; ///< which bodies may stand between
     std::uint64_t seed = 1;
 };

@@ -33,6 +33,9 @@ void check_surface(const std::string& where, const Surface& s) {
                          std::isfinite(s.half_angle_rad);
     if (!numbers) fail(where, "its surface has a number that is not finite");
     if (s.orientation != 1.0 && s.orientation != -1.0) fail(where, "its orientation is neither 1 nor -1");
+    for (const Vec3& corner : s.corners) {
+        if (!finite(corner)) fail(where, "a corner of its surface is not finite");
+    }
     for (const Vec3& pole : s.bspline.poles) {
         if (!finite(pole)) fail(where, "a pole of its surface is not finite");
     }

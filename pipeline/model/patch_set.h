@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace kinelux::model {
 
-enum class SurfaceType : std::uint8_t { Plane, Cylinder, Cone, Sphere, Torus, BSpline };
+enum class SurfaceType : std::uint8_t { Plane, Cylinder, Cone, Sphere, Torus, BSpline, Bilinear };
 
 /// A tensor-product rational B-spline surface.
 struct BSpline {
@@ -28,7 +29,10 @@ struct BSpline {
 ///   Cone      origin + (radius + v tan(half_angle)) e(u) + v axis_w                u [rad], v [m]
 ///   Sphere    origin + radius (cos v e(u) + sin v axis_w)                          u, v [rad]
 ///   Torus     origin + (radius + minor_radius cos v) e(u) + minor_radius sin v axis_w
-/// with e(u) = cos u axis_u + sin u axis_v. BSpline uses its own poles. The normal is x_u x x_v, times `orientation`.
+/// with e(u) = cos u axis_u + sin u axis_v; two use no frame:
+///   BSpline   its own poles
+///   Bilinear  (1-u)(1-v) corners[0] + u(1-v) corners[1] + uv corners[2] + (1-u)v corners[3]   u, v [1]
+/// The normal is x_u x x_v, times `orientation`.
 struct Surface {
     SurfaceType type = SurfaceType::Plane;
     Vec3 origin{0.0};
@@ -38,6 +42,8 @@ struct Surface {
     double half_angle_rad = 0.0;
     double orientation = 1.0; ///< +1 or -1
     BSpline bspline;          ///< only for BSpline
+    std::array<Vec3, 4>
+        corners{}; ///< only for Bilinear, counter-clockwise seen from the front at orientation 1 [m]
 };
 
 /// A trimmed piece of one surface: what carries radiosity as a smooth function.

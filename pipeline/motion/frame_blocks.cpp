@@ -60,11 +60,11 @@ std::vector<Ball> bounds_of_movers(std::span<const ElementShape> moving) {
 
 // Whether a moving body takes light from a pair: rays between their nodes, against the moving bodies alone.
 bool shaded(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders) {
-    const auto& xs = a.nodes.nodes;
-    const auto& ys = b.nodes.nodes;
+    const auto& xs = a.rules[0].nodes;
+    const auto& ys = b.rules[0].nodes;
     const std::size_t probes = std::max(xs.size(), ys.size());
     constexpr std::size_t stride =
-        7; // coprime to the usual node counts: pairs each node with a far one of the other
+        11; // coprime to the usual node counts: pairs each node with a far one of the other
     for (std::size_t k = 0; k < probes; ++k)
         if (occluders.occluded(xs[k % xs.size()].position, ys[(stride * k) % ys.size()].position,
                                visibility::Among::Moving))

@@ -119,7 +119,7 @@ std::vector<double> Gather::indirect(const Receiver& receiver) const {
         if (glm::dot(way, receiver.normal) < -shape.radius) continue; // below the horizon
         if (glm::length(way) > near_distance * shape.radius) {
             const bool far = glm::length(way) > far_distance * shape.radius;
-            add_nodes(e, far ? shape.nodes : shape.fine_nodes, receiver, rays);
+            add_nodes(e, shape.rules[far ? 0 : 1], receiver, rays);
             continue;
         }
         for (const geometry::Facet& facet : shape.facets) add_piece(e, facet, receiver, 0, rays);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <unordered_map>
 #include <utility>
 
@@ -20,11 +21,26 @@ void add_triangle(Body& body, model::Triangle corners, const model::Surface& sur
     body.triangles.push_back(corners);
 }
 
+void add_outline(Body& body, const model::Patch& patch, std::uint32_t first_point,
+                 std::uint32_t first_triangle) {
+    Outline& outline = body.outlines.emplace_back();
+    outline.first_triangle = first_triangle;
+    outline.triangle_count = static_cast<std::uint32_t>(patch.triangles.size());
+    outline.loops = patch.loops;
+    for (std::vector<std::uint32_t>& loop : outline.loops) {
+        for (std::uint32_t& point : loop) point += first_point;
+        if (patch.surface.orientation < 0.0) std::reverse(loop.begin(), loop.end());
+    }
+}
+
 void add_patch(Body& body, const model::Patch& patch) {
     const auto first = static_cast<std::uint32_t>(body.points.size());
+    const auto first_triangle = static_cast<std::uint32_t>(body.triangles.size());
     for (const Vec2& uv : patch.points) body.points.push_back(point_of(patch.surface, uv));
     for (const model::Triangle& t : patch.triangles)
         add_triangle(body, {first + t[0], first + t[1], first + t[2]}, patch.surface);
+    if (patch.surface.type == model::SurfaceType::Plane && !patch.loops.empty())
+        add_outline(body, patch, first, first_triangle);
 }
 
 void add_element(Body& body, const model::Patch& patch, std::span<const model::DomainTriangle> triangles) {

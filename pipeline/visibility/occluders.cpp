@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <utility>
 
 #include <embree3/rtcore.h>
 
 #include "core/error.h"
+#include "visibility/polygon_blockers.h"
 
 // Embree computes in float. All it sees is in unit coordinates, (x - centre) / extent, where the rounding of a float is
 // about 6e-8 wherever the scene lies and however large it is; end_offset is 300 times that.
@@ -99,6 +101,8 @@ struct Occluders::Impl {
     std::vector<Vec3> body_centres;                           ///< of moving_bodies, at rest
     Vec3 centre{0.0};
     double extent = 1.0;
+    std::once_flag polygons_made;
+    std::optional<PolygonBlockers> polygons;
 
     Vec3 unit(const Vec3& x) const { return (x - centre) / extent; }
     ScenePointer new_scene() const {
@@ -263,6 +267,15 @@ void Occluders::set_poses(std::span<const geometry::Pose> poses) {
                                   std::to_string(impl_->bodies.size()) + " bodies");
     for (const std::uint32_t b : impl_->moving_bodies) impl_->poses[b] = poses[b];
     if (impl_->moving) impl_->place_moving();
+    if (impl_->polygons) impl_->polygons->set_poses(impl_->poses);
+}
+
+const PolygonBlockers& Occluders::polygons() const {
+    std::call_once(impl_->polygons_made, [this] {
+        impl_->polygons.emplace(impl_->bodies);
+        impl_->polygons->set_poses(impl_->poses);
+    });
+    return *impl_->polygons;
 }
 
 bool Occluders::occluded(const Vec3& from, const Vec3& to, Among among) const {

@@ -17,10 +17,22 @@
 
 namespace kinelux::visibility {
 
+class PolygonBlockers;
+
+/// A planar polygon of a body, given by its boundary beside its triangles.
+struct Outline {
+    std::vector<std::vector<std::uint32_t>>
+        loops;                        ///< into Body::points, around the same area as the triangles:
+                                      ///< outer counter-clockwise from the front, holes clockwise
+    std::uint32_t first_triangle = 0; ///< into Body::triangles
+    std::uint32_t triangle_count = 0;
+};
+
 /// A rigid body's triangles at rest.
 struct Body {
     std::vector<Vec3> points; ///< [m]
     std::vector<model::Triangle> triangles;
+    std::vector<Outline> outlines; ///< of some of the triangles, in their order; rays do not need them
     bool moves = false;
 };
 
@@ -59,6 +71,9 @@ public:
     /// The first triangle along a ray that starts end_offset() ahead of `origin`.
     std::optional<Hit> first_hit(const Vec3& origin, const Vec3& direction) const;
 
+    /// The same bodies at the same poses as planar polygons; made when first asked for.
+    const PolygonBlockers& polygons() const;
+
     double end_offset() const; ///< [m], 2e-5 of the size of the scene
     bool empty() const;        ///< no triangles at all
     bool any_moving() const;
@@ -68,8 +83,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// The occluding triangles of the fitted scene, one body per object of the scene, in order. Right where all patches are
-/// plane; the triangles of a curved patch are chords that may hide finer elements on its hollow side.
+/// The occluding triangles of the fitted scene, one body per object of the scene, in order, with the outlines of planar
+/// patches. Right where all patches are plane; the triangles of a curved patch are chords that may hide finer elements on its hollow side.
 std::vector<Body> bodies_of(const model::PatchSet& patches, const model::Scene& scene);
 /// The same with the elements' own facets on curved patches, so that no element hides behind another chord of its patch.
 std::vector<Body> bodies_of(const model::PatchSet& patches, const model::ClusterTree& tree,

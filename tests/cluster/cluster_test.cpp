@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 
 #include <glm/common.hpp>
@@ -13,6 +14,9 @@
 #include "core/error.h"
 #include "fit/fit.h"
 #include "fit/scene_meshes.h"
+#include "geometry/element_shape.h"
+#include "geometry/surface.h"
+#include "support/curved.h"
 
 namespace kinelux::cluster {
 namespace {
@@ -190,6 +194,54 @@ TEST(Cluster, curved_patches_are_cut_by_their_length_on_the_surface) {
     model::PatchSet patches;
     patches.patches.push_back(quarter_pipe);
     EXPECT_EQ(built(patches, {.element_size = 1.01, .cluster_size = 1.0}).elements.size(), 3U);
+}
+
+// Longest of the ways along u and v across an element, measured on the surface in small steps.
+double longest_way(const model::ClusterTree& tree, const model::Element& element, const model::Patch& patch) {
+    Vec2 low{1e9}, high{-1e9};
+    for (std::uint32_t t = 0; t < element.triangle_count; ++t)
+        for (const Vec2& uv : tree.domain_triangles[element.first_triangle + t]) {
+            low = glm::min(low, uv);
+            high = glm::max(high, uv);
+        }
+    constexpr int steps = 100;
+    double longest = 0.0;
+    for (int line = 0; line <= steps; ++line) {
+        Vec2 ways{0.0};
+        for (int i = 0; i < steps; ++i)
+            for (int axis = 0; axis < 2; ++axis) {
+                Vec2 share{static_cast<double>(line) / steps}, next = share;
+                share[axis] = static_cast<double>(i) / steps;
+                next[axis] = static_cast<double>(i + 1) / steps;
+                ways[axis] += glm::distance(geometry::position(patch.surface, glm::mix(low, high, share)),
+                                            geometry::position(patch.surface, glm::mix(low, high, next)));
+            }
+        longest = std::max({longest, ways.x, ways.y});
+    }
+    return longest;
+}
+
+TEST(Cluster, whole_spheres_cylinders_and_tori_are_cut_by_size_and_turn) {
+    using model::SurfaceType;
+    using std::numbers::pi;
+    const auto whole = [](SurfaceType type, const Vec2& low, const Vec2& high) {
+        return support::surface_patch(support::tilted_surface(type), low, high);
+    };
+    for (const model::Patch& patch :
+         {support::whole_sphere(), whole(SurfaceType::Cylinder, {0, 0}, {2 * pi, 3}),
+          whole(SurfaceType::Torus, {0, 0}, {2 * pi, 2 * pi}), whole(SurfaceType::Bilinear, {0, 0}, {1, 1})})
+        for (const double size : {0.2, 0.7, 100.0}) {
+            model::PatchSet patches;
+            patches.patches.push_back(patch);
+            const model::ClusterTree tree = built(patches, {.element_size = size, .cluster_size = size});
+            double area = 0.0;
+            for (const geometry::ElementShape& shape : geometry::element_shapes(patches, tree, 1, 0)) {
+                area += shape.area;
+                EXPECT_LE(longest_way(tree, tree.elements[shape.id.value], patch), 1.001 * size);
+                EXPECT_GT(shape.cone_cosine, -0.5) << "bends by more than a quarter turn each way";
+            }
+            EXPECT_NEAR(area, geometry::area(patch), 1e-9 * area);
+        }
 }
 
 TEST(Cluster, same_input_gives_the_same_tree) {

@@ -54,9 +54,9 @@ TEST(ElementShape, moved_keeps_area_basis_and_turns_normals) {
     const Pose pose{glm::angleAxis(std::numbers::pi / 2, Vec3(1, 0, 0)), Vec3(0, 0, 5)};
     const auto turned = moved(shape, pose);
     EXPECT_LT(glm::distance(turned.mean_normal, Vec3(0, -1, 0)), 1e-14);
-    EXPECT_LT(glm::distance(turned.nodes.nodes[0].position, pose.point(shape.nodes.nodes[0].position)),
+    EXPECT_LT(glm::distance(turned.rules[0].nodes[0].position, pose.point(shape.rules[0].nodes[0].position)),
               1e-14);
-    EXPECT_EQ(turned.nodes.basis, shape.nodes.basis);
+    EXPECT_EQ(turned.rules[0].basis, shape.rules[0].basis);
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "geometry/quadrature.h"
 
 namespace kinelux::geometry {
 namespace {
@@ -23,6 +24,7 @@ model::Surface surface_of(model::SurfaceType type) {
     s.radius = 2.0;
     s.minor_radius = 0.5;
     s.half_angle_rad = 0.3;
+    s.corners = {Vec3(0, 0, 0), Vec3(1, 0, 0.3), Vec3(1.2, 1, 0), Vec3(0, 0.9, 0.4)};
     return s;
 }
 
@@ -46,7 +48,8 @@ model::Surface quarter_pipe() {
 TEST(Surface, normal_and_area_factor_agree_with_differences) {
     for (const model::SurfaceType type :
          {model::SurfaceType::Plane, model::SurfaceType::Cylinder, model::SurfaceType::Cone,
-          model::SurfaceType::Sphere, model::SurfaceType::Torus, model::SurfaceType::BSpline}) {
+          model::SurfaceType::Sphere, model::SurfaceType::Torus, model::SurfaceType::BSpline,
+          model::SurfaceType::Bilinear}) {
         const model::Surface s = type == model::SurfaceType::BSpline ? quarter_pipe() : surface_of(type);
         const double h = 1e-6;
         const Vec2 uv{0.4, 0.3};
@@ -110,6 +113,42 @@ TEST(Surface, plane_parameters_invert_the_plane) {
     const Vec3 x = evaluate(s, {3.0, -4.0}).position + 7.0 * s.axis_w;
     EXPECT_NEAR(plane_parameters(s, x).x, 3.0, 1e-14);
     EXPECT_NEAR(plane_parameters(s, x).y, -4.0, 1e-14);
+}
+
+model::Patch over(const model::Surface& surface, const Vec2& low, const Vec2& high) {
+    model::Patch patch;
+    patch.surface = surface;
+    patch.points = {low, {high.x, low.y}, high, {low.x, high.y}};
+    patch.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return patch;
+}
+
+TEST(Surface, areas_agree_with_their_closed_forms) {
+    using model::SurfaceType;
+    using std::numbers::pi;
+    const double slope = std::tan(0.3);
+    const auto at = [](SurfaceType type) { return surface_of(type); };
+    EXPECT_NEAR(area(over(at(SurfaceType::Plane), {0, 1}, {2, 4})), 6.0, 1e-13);
+    EXPECT_NEAR(area(over(at(SurfaceType::Cylinder), {0, -1}, {2 * pi, 2})), 12.0 * pi, 1e-12);
+    EXPECT_NEAR(area(over(at(SurfaceType::Cone), {0, 0}, {pi, 3})), pi * (6.0 + 4.5 * slope) / std::cos(0.3),
+                1e-12);
+    EXPECT_NEAR(area(over(at(SurfaceType::Sphere), {0, -pi / 2}, {2 * pi, pi / 2})), 16.0 * pi, 1e-11);
+    EXPECT_NEAR(area(over(at(SurfaceType::Torus), {0, 0}, {2 * pi, pi})), 4.0 * pi * pi * 0.5, 1e-11);
+    EXPECT_NEAR(area(over(quarter_pipe(), {0, 0}, {1, 2})), pi, 1e-9);
+}
+
+TEST(Surface, bilinear_area_of_a_saddle_is_its_closed_form) {
+    // z = x y over the unit square: the integral of sqrt(1 + x^2 + y^2), along y in closed form, along x by 32 nodes.
+    model::Surface saddle;
+    saddle.type = model::SurfaceType::Bilinear;
+    saddle.corners = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 1), Vec3(0, 1, 0)};
+    double exact = 0.0;
+    const GaussRule& gauss = gauss_rule(32);
+    for (std::size_t i = 0; i < gauss.nodes.size(); ++i) {
+        const double c2 = 1.0 + gauss.nodes[i] * gauss.nodes[i];
+        exact += gauss.weights[i] * 0.5 * (std::sqrt(c2 + 1.0) + c2 * std::asinh(1.0 / std::sqrt(c2)));
+    }
+    EXPECT_NEAR(area(over(saddle, {0, 0}, {1, 1})), exact, 1e-12);
 }
 
 TEST(Surface, points_without_normal_and_misfit_splines_are_refused) {

@@ -132,6 +132,18 @@ TEST_F(CaseFolderTest, scene_meshes_come_back_exactly) {
     }
 }
 
+TEST_F(CaseFolderTest, corners_of_bilinear_surfaces_come_back_exactly) {
+    model::PatchSet wanted = support::example_patches();
+    model::Surface& surface = wanted.patches[0].surface;
+    surface.type = model::SurfaceType::Bilinear;
+    surface.corners = {Vec3(0, 0, 0), Vec3(1, 0, 0.1), Vec3(1, 1, 0), Vec3(0, 1, 1.0 / 3.0)};
+    folder.write_patches(wanted, support::example_scene());
+    const model::PatchSet read = folder.read_patches();
+    EXPECT_EQ(read.patches[0].surface.type, model::SurfaceType::Bilinear);
+    EXPECT_EQ(read.patches[0].surface.corners, surface.corners);
+    EXPECT_EQ(read.patches[1].surface.type, model::SurfaceType::BSpline);
+}
+
 TEST_F(CaseFolderTest, patches_come_back_exactly) {
     const model::PatchSet wanted = support::example_patches(), read = folder.read_patches();
     ASSERT_EQ(read.patches.size(), wanted.patches.size());

@@ -32,7 +32,7 @@ struct Room {
     model::Solution solve(const std::vector<std::uint32_t>& frames = {0}) const {
         const auto shapes = geometry::element_shapes(patches, tree, plan.degree, 0);
         visibility::Occluders occluders(visibility::bodies_of(patches, scene));
-        const auto options = coefficients::transport_options_for(scene, plan);
+        const auto options = coefficients::transport_options_for(scene, plan, shapes);
         const auto blocks = coefficients::compute_coefficients(shapes, scene, plan, occluders, options, 1e6);
         motion::FrameUpdater updater(blocks, shapes, scene, plan, occluders, options);
         std::vector<double> areas;

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kernel/near_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <utility>
+
+#include "geometry/quadrature.h"
+
+namespace kinelux::kernel {
+
+namespace {
+
+using geometry::ElementShape;
+using geometry::Facet;
+using geometry::SurfaceNode;
+
+constexpr int most_nodes = 12;
+
+// A bilinear quadrilateral in a facet's barycentric coordinates: s runs from the edge 0-1 to the edge 3-2, t along them.
+// A triangle has 2 = 3. Each direction has its Gauss rule, its error, and where it is divided.
+struct Direction {
+    int nodes = 2;
+    double raw_error = 0.0;    ///< of the cell's values, before calibration [1]
+    double calibration = 10.0; ///< what raw errors were found to be wrong by nearby
+    double foretold = 0.0;     ///< error relative to the integrand's size, from where it is singular [1]
+    double division = 0.5;
+
+    double error() const { return calibration * raw_error; }
+};
+
+struct Cell {
+    const Facet* facet;
+    std::array<Vec2, 4> corners;
+    Direction s, t;
+    std::vector<double> values;
+
+    double error() const { return s.error() + t.error(); }
+};
+
+std::array<std::array<Vec2, 4>, 2> divided(const std::array<Vec2, 4>& c, bool across_s, double at) {
+    if (across_s) {
+        const Vec2 left = c[0] + at * (c[3] - c[0]), right = c[1] + at * (c[2] - c[1]);
+        return {{{c[0], c[1], right, left}, {left, right, c[2], c[3]}}};
+    }
+    const Vec2 bottom = c[0] + at * (c[1] - c[0]), top = c[3] + at * (c[2] - c[3]);
+    return {{{c[0], bottom, top, c[3]}, {bottom, c[1], c[2], top}}};
+}
+
+// Normalised Legendre polynomials of degree 0 .. n-1 at the n Gauss nodes: [degree * n + node].
+std::vector<double> legendre_at_nodes(int n) {
+    const auto count = static_cast<std::size_t>(n);
+    std::vector<double> values(count * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = 2.0 * geometry::gauss_rule(n).nodes[i] - 1.0;
+        double previous = 0.0, value = 1.0;
+        for (int k = 0; k < n; ++k) {
+            values[static_cast<std::size_t>(k) * count + i] = value * std::sqrt(2.0 * k + 1.0);
+            previous = std::exchange(value, ((2 * k + 1) * x * value - k * previous) / (k + 1));
+        }
+    }
+    return values;
+}
+
+const std::vector<double>& legendre_table(int n) {
+    static const std::vector<std::vector<double>> table = [] {
+        std::vector<std::vector<double>> result(1);
+        for (int k = 1; k <= most_nodes; ++k) result.push_back(legendre_at_nodes(k));
+        return result;
+    }();
+    return table[static_cast<std::size_t>(n)];
+}
+
+double norm2(std::span<const double> values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return sum;
+}
+
+// The nearest singularity of the inner integral as seen along a line through a cell, from 0 to 1.
+struct Singularity {
+    double rate = std::numeric_limits<double>::infinity(); ///< by which Gauss errors fall per degree, >= 1
+    double place = 0.5;                                    ///< its real part, in 0..1
+    double distance = std::numeric_limits<double>::infinity(); ///< of the singular point from the line [m]
+};
+
+class Foreteller {
+public:
+    explicit Foreteller(const InnerPolygon& polygon) : polygon_(polygon) {}
+
+    // Of the straight line from a to b.
+    void along(const Vec3& a, const Vec3& b, Singularity& nearest) const {
+        const Vec3 d = b - a;
+        for (std::size_t l = 0; l < polygon_.loops.size(); ++l) {
+            const std::span<const Vec3> loop = polygon_.loops[l];
+            for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+                consider_corner(a - loop[j], d, nearest);
+                consider_edge(a - loop[j], d, loop[i] - loop[j], nearest);
+            }
+        }
+        consider_plane(a, d, nearest);
+    }
+
+private:
+    // |r0 + z d| = 0
+    static void consider_corner(const Vec3& r0, const Vec3& d, Singularity& nearest) {
+        const double d2 = glm::dot(d, d);
+        if (!(d2 > 0.0)) return;
+        const double real = -glm::dot(r0, d) / d2;
+        const double distance = glm::length(r0 + real * d);
+        consider({real, distance / std::sqrt(d2)}, distance, nearest);
+    }
+
+    // The distance from the line of the edge is 0, abreast of the edge itself.
+    static void consider_edge(const Vec3& r0, const Vec3& d, const Vec3& edge, Singularity& nearest) {
+        constexpr double parallel = 1e-12;
+        const double length2 = glm::dot(edge, edge);
+        if (!(length2 > 0.0)) return;
+        const Vec3 r_across = r0 - glm::dot(r0, edge) / length2 * edge, d_across = d - glm::dot(d, edge) / length2 * edge;
+        const double d2 = glm::dot(d_across, d_across);
+        if (d2 <= parallel * glm::dot(d, d)) return;
+        const double real = -glm::dot(r_across, d_across) / d2;
+        const double abreast = glm::dot(r0 + real * d, edge) / length2;
+        if (abreast < 0.0 || abreast > 1.0) return;
+        const double distance = glm::length(r_across + real * d_across);
+        consider({real, distance / std::sqrt(d2)}, distance, nearest);
+    }
+
+    void consider_plane(const Vec3& a, const Vec3& d, Singularity& nearest) const {
+        const double h0 = glm::dot(polygon_.normal, a - polygon_.origin), slope = glm::dot(polygon_.normal, d);
+        if (std::abs(slope) > 0.0) consider({-h0 / slope, 0.0}, 0.0, nearest);
+    }
+
+    static void consider(const std::complex<double>& z, double distance, Singularity& nearest) {
+        const std::complex<double> x = 2.0 * z - 1.0;
+        const std::complex<double> root = std::sqrt(x * x - 1.0);
+        const double rate = std::max(std::abs(x + root), std::abs(x - root));
+        if (rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
+    }
+
+    const InnerPolygon& polygon_;
+};
+
+class OuterIntegrator {
+public:
+    OuterIntegrator(const ElementShape& element, std::size_t columns, PointGather& inner,
+                    const OuterOptions& options)
+        : element_(element),
+          columns_(columns),
+          size_(element.basis.size() * columns),
+          inner_(inner),
+          options_(options),
+          gathered_(columns),
+          phi_(element.basis.size()),
+          entries_(size_) {}
+
+    OuterResult run(std::span<const OuterPiece> pieces) {
+        std::vector<Cell> first;
+        for (const OuterPiece& piece : pieces) append_cells(piece, first);
+        for (const Cell& cell : first) total_area_ += area_of(cell);
+        cells_ = options_.polygon != nullptr ? planned(std::move(first)) : std::move(first);
+        for (Cell& cell : cells_) {
+            if (options_.refine) ask_for_measuring(cell);
+            evaluate(cell);
+        }
+        if (options_.refine) refine();
+
+        OuterResult result;
+        result.values.assign(size_, 0.0);
+        for (const Cell& cell : cells_) {
+            for (std::size_t k = 0; k < size_; ++k) result.values[k] += cell.values[k];
+            result.error += cell.error();
+        }
+        if (!options_.refine) result.error = options_.tolerance * std::sqrt(norm2(result.values));
+        result.points = points_;
+        return result;
+    }
+
+private:
+    static bool smaller_error(const Cell& a, const Cell& b) { return a.error() < b.error(); }
+
+    static void append_cells(const OuterPiece& piece, std::vector<Cell>& cells) {
+        const std::vector<Vec2>& p = piece.corners;
+        if (p.size() == 3) return cells.push_back({piece.facet, {p[0], p[1], p[2], p[2]}, {}, {}, {}});
+        if (p.size() == 4) return cells.push_back({piece.facet, {p[0], p[1], p[2], p[3]}, {}, {}, {}});
+        Vec2 centre(0.0);
+        for (const Vec2& corner : p) centre += corner / static_cast<double>(p.size());
+        for (std::size_t i = 0; i < p.size(); ++i)
+            cells.push_back({piece.facet, {p[i], p[(i + 1) % p.size()], centre, centre}, {}, {}, {}});
+    }
+
+    // By the diagonals; exact on flat facets, and only for shares.
+    static double area_of(const Cell& cell) {
+        const Vec2 e = cell.corners[2] - cell.corners[0], f = cell.corners[3] - cell.corners[1];
+        return std::abs(e.x * f.y - e.y * f.x) * cell.facet->area;
+    }
+
+    Vec3 position(const Facet* facet, const Vec2& at) const {
+        return facet->corners[0] + at.x * (facet->corners[1] - facet->corners[0]) +
+               at.y * (facet->corners[2] - facet->corners[0]);
+    }
+
+    // Nodes with which errors can be measured; few for coarse and many for fine tolerances are the cheapest in the end.
+    void ask_for_measuring(Cell& cell) const {
+        const double tolerance = options_.tolerance;
+        const int by_tolerance = tolerance >= 3e-3 ? 2 : tolerance >= 1e-4 ? 3 : tolerance >= 1e-6 ? 5 : 7;
+        const int nodes = std::clamp(by_tolerance + (element_.basis.degree() + 1) / 2, 3, most_nodes);
+        cell.s.nodes = cell.t.nodes = nodes;
+    }
+
+    // Divides cells until every direction of each is resolved by few nodes, or does not matter.
+    std::vector<Cell> planned(std::vector<Cell> waiting) const {
+        std::vector<Cell> result;
+        while (!waiting.empty()) {
+            Cell cell = std::move(waiting.back());
+            waiting.pop_back();
+            const bool resolved = foretell(cell);
+            if (resolved || result.size() + waiting.size() > most_planned) {
+                result.push_back(std::move(cell));
+                continue;
+            }
+            const bool across_s = cell.s.foretold >= cell.t.foretold;
+            for (const auto& corners :
+                 divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division))
+                waiting.push_back({cell.facet, corners, {}, {}, {}});
+        }
+        return result;
+    }
+
+    // Chooses nodes for both directions. @return  whether they resolve the integrand
+    bool foretell(Cell& cell) const {
+        const Foreteller foreteller(*options_.polygon);
+        const auto& c = cell.corners;
+        Singularity s, t;
+        for (const double at : {0.1, 0.5, 0.9}) {
+            foreteller.along(position(cell.facet, c[0] + at * (c[1] - c[0])),
+                             position(cell.facet, c[3] + at * (c[2] - c[3])), s);
+            foreteller.along(position(cell.facet, c[0] + at * (c[3] - c[0])),
+                             position(cell.facet, c[1] + at * (c[2] - c[1])), t);
+        }
+        const double share = area_of(cell) / total_area_;
+        const double s_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[1])), position(cell.facet, 0.5 * (c[2] + c[3])));
+        const double t_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[3])), position(cell.facet, 0.5 * (c[1] + c[2])));
+        const bool s_resolved = choose(s, share, s_length, cell.s);
+        const bool t_resolved = choose(t, share, t_length, cell.t);
+        return s_resolved && t_resolved;
+    }
+
+    bool choose(const Singularity& nearest, double share, double length, Direction& direction) const {
+        // What errors add up to stays behind the sum of their bounds, the more so the coarser the tolerance.
+        const double wanted = 10.0 * options_.tolerance * std::pow(100.0 * options_.tolerance, 0.15) / share;
+        const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
+        const double log_rate = std::log(nearest.rate);
+        constexpr int most = 8, fewest = 2;
+        const double degree = std::log(amplitude / wanted) / std::max(log_rate, 1e-9);
+        const double nodes = std::ceil(0.5 * (degree + extra));
+        direction.nodes = static_cast<int>(std::clamp(nodes, double{fewest}, double{most}));
+        direction.foretold = std::min(1.0, amplitude * std::pow(nearest.rate, -(2.0 * direction.nodes - extra)));
+        if (nodes <= most) return true;
+        // A singularity that the cell all but touches is weak: the integrand only bends there, over the cell's length.
+        const double size = 2.0 * element_.radius;
+        if (nearest.distance < 1e-3 * options_.tolerance * size) {
+            constexpr double bend = 0.1;
+            direction.foretold = std::min(direction.foretold, bend * length / size);
+        }
+        direction.division = nearest.place < 0.25 ? 0.25 : nearest.place > 0.75 ? 0.75 : nearest.place;
+        return direction.foretold <= wanted;
+    }
+
+    void refine() {
+        std::make_heap(cells_.begin(), cells_.end(), smaller_error);
+        // The sums are kept up to date by differences; they only steer.
+        std::vector<double> sum(size_, 0.0);
+        double error = 0.0;
+        const auto account = [&](const Cell& cell, double sign) {
+            for (std::size_t k = 0; k < size_; ++k) sum[k] += sign * cell.values[k];
+            error += sign * cell.error();
+        };
+        for (const Cell& cell : cells_) account(cell, 1.0);
+        while (!cells_.empty() && points_ < options_.most_points &&
+               error > options_.tolerance * std::max(std::sqrt(norm2(sum)), options_.floor)) {
+            std::pop_heap(cells_.begin(), cells_.end(), smaller_error);
+            const Cell worst = std::move(cells_.back());
+            cells_.pop_back();
+            account(worst, -1.0);
+            for (Cell& half : split(worst)) {
+                account(half, 1.0);
+                cells_.push_back(std::move(half));
+                std::push_heap(cells_.begin(), cells_.end(), smaller_error);
+            }
+        }
+    }
+
+    std::array<Cell, 2> split(const Cell& cell) {
+        const bool across_s = cell.s.error() >= cell.t.error();
+        const auto corners = divided(cell.corners, across_s, 0.5);
+        std::array<Cell, 2> result{Cell{cell.facet, corners[0], cell.s, cell.t, {}},
+                                   Cell{cell.facet, corners[1], cell.s, cell.t, {}}};
+        for (Cell& half : result) evaluate(half);
+        calibrate(cell, result);
+        return result;
+    }
+
+    // The change that halving brings is what the cell's error across was: the halves are judged in proportion.
+    void calibrate(const Cell& cell, std::array<Cell, 2>& parts) const {
+        constexpr double safety = 3.0, least = 1e-3, most = 1e3;
+        const bool across_s = cell.s.error() >= cell.t.error();
+        const Direction& direction = across_s ? cell.s : cell.t;
+        if (!(direction.raw_error > 0.0)) return;
+        double change2 = 0.0;
+        for (std::size_t k = 0; k < size_; ++k) {
+            const double change = cell.values[k] - parts[0].values[k] - parts[1].values[k];
+            change2 += change * change;
+        }
+        const double calibration = std::clamp(safety * std::sqrt(change2) / direction.raw_error, least, most);
+        for (Cell& part : parts) (across_s ? part.s : part.t).calibration = calibration;
+    }
+
+    void evaluate(Cell& cell) {
+        const geometry::GaussRule& s_rule = geometry::gauss_rule(cell.s.nodes);
+        const geometry::GaussRule& t_rule = geometry::gauss_rule(cell.t.nodes);
+        const std::size_t ns = s_rule.nodes.size(), nt = t_rule.nodes.size();
+        along_s_.assign(ns * size_, 0.0);
+        along_t_.assign(nt * size_, 0.0);
+        cell.values.assign(size_, 0.0);
+        const auto& c = cell.corners;
+        for (std::size_t i = 0; i < ns; ++i)
+            for (std::size_t j = 0; j < nt; ++j) {
+                const Vec2 bottom = c[0] + t_rule.nodes[j] * (c[1] - c[0]);
+                const Vec2 ds = c[3] + t_rule.nodes[j] * (c[2] - c[3]) - bottom;
+                const Vec2 dt = (1.0 - s_rule.nodes[i]) * (c[1] - c[0]) + s_rule.nodes[i] * (c[2] - c[3]);
+                set_entries(cell.facet, bottom + s_rule.nodes[i] * ds, std::abs(ds.x * dt.y - ds.y * dt.x));
+                for (std::size_t e = 0; e < size_; ++e) {
+                    along_s_[i * size_ + e] += t_rule.weights[j] * entries_[e];
+                    along_t_[j * size_ + e] += s_rule.weights[i] * entries_[e];
+                }
+            }
+        for (std::size_t i = 0; i < ns; ++i)
+            for (std::size_t e = 0; e < size_; ++e) cell.values[e] += s_rule.weights[i] * along_s_[i * size_ + e];
+        if (options_.refine) {
+            cell.s.raw_error = error_along(along_s_, cell.s.nodes);
+            cell.t.raw_error = error_along(along_t_, cell.t.nodes);
+        }
+    }
+
+    // entries_ = phi_k(x) gather_l(x) times the area per (s, t) at one point.
+    void set_entries(const Facet* facet, const Vec2& at, double jacobian) {
+        Vec2 parameter;
+        const SurfaceNode x =
+            geometry::node_at(element_, *facet, {1.0 - at.x - at.y, at.x, at.y}, parameter);
+        inner_.gather(x, gathered_);
+        ++points_;
+        element_.basis.evaluate(parameter, phi_);
+        // node_at's weight is the area per unit of the reference triangle's measure, which is 2 db1 db2.
+        const double area = 2.0 * x.weight * jacobian;
+        for (std::size_t k = 0; k < phi_.size(); ++k)
+            for (std::size_t l = 0; l < columns_; ++l)
+                entries_[k * columns_ + l] = area * phi_[k] * gathered_[l];
+    }
+
+    // Where the Legendre coefficients c_k of an integrand fall like q^k the error of n Gauss nodes is about c_2n, or
+    // c_(n-1)^2 / c_0; where they fall like a power of k it is smaller than that as well.
+    double error_along(std::span<const double> lines, int nodes) {
+        const auto& weights = geometry::gauss_rule(nodes).weights;
+        const auto& legendre = legendre_table(nodes);
+        const std::size_t n = weights.size();
+        double scale2 = 0.0, highest2 = 0.0;
+        for (std::size_t k = 0; k < n; ++k) {
+            coefficients_.assign(size_, 0.0);
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t e = 0; e < size_; ++e)
+                    coefficients_[e] += weights[i] * legendre[k * n + i] * lines[i * size_ + e];
+            const double square = norm2(coefficients_);
+            scale2 += square;
+            if (k >= 2 && k + 2 >= n) highest2 = std::max(highest2, square);
+        }
+        return scale2 > 0.0 ? highest2 / std::sqrt(scale2) : 0.0;
+    }
+
+    static constexpr std::size_t most_planned = 4000;
+    static constexpr double amplitude = 4.0; ///< of an integrand on the ellipse through its nearest singularity
+
+    const ElementShape& element_;
+    std::size_t columns_, size_;
+    PointGather& inner_;
+    OuterOptions options_;
+    double total_area_ = 0.0;
+    std::vector<double> gathered_, phi_, entries_, along_s_, along_t_, coefficients_;
+    std::vector<Cell> cells_;
+    std::size_t points_ = 0;
+};
+
+} // namespace
+
+OuterResult integrate_outer(const ElementShape& element, std::span<const OuterPiece> pieces, std::size_t columns,
+                            PointGather& inner, const OuterOptions& options) {
+    return OuterIntegrator(element, columns, inner, options).run(pieces);
+}
+
+} // namespace kinelux::kernel

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "support/flat_pieces.h"
+
+namespace kinelux::support {
+
+/// integral over a flat piece of phi_l(y) cos cos' / (pi r^2) dA for all l at once, at any point in front of it. The
+/// piece is bisected until a part is either far from the point, for a Gauss product, or compact, for polar integration
+/// about the foot of the point: closed along the radius, Gauss in asinh(u / distance to the side) along each side.
+class PointIntegral {
+public:
+    PointIntegral(const FlatPiece& piece, const geometry::Basis& basis);
+
+    /// Adds the integral at a receiver to `sums`. @param normal  unit; the whole piece must lie in front of it
+    void add(const Vec3& x, const Vec3& normal, std::span<double> sums);
+
+private:
+    struct Part {
+        std::array<Vec2, 3> corners;
+        double size;                 ///< longest side [m]
+        double area;                 ///< [m2]
+        std::size_t first_child = 0; ///< 0: not bisected
+        std::vector<Vec2> nodes;     ///< of the Gauss product; empty: not visited
+        std::vector<double> weights; ///< [m2]
+        std::vector<double> basis;   ///< nodes x basis size
+    };
+    /// A receiver in the coordinates of the piece's plane.
+    struct Receiver {
+        Vec3 x, normal;
+        Vec2 foot;
+        double height; ///< over the plane [m]
+        double facing; ///< minus the product of both normals
+        Vec2 slope;    ///< the receiver's normal along the plane's axes
+        std::span<double> sums;
+    };
+
+    static Part make_part(const std::array<Vec2, 3>& corners);
+    void add_part(const Receiver& receiver, std::size_t index);
+    void bisect(std::size_t index);
+    void add_gauss(const Receiver& receiver, Part& part) const;
+    void add_polar(const Receiver& receiver, const Part& part) const;
+    void fill_nodes(Part& part) const;
+
+    Plane plane_;
+    const geometry::Basis& basis_;
+    std::vector<Part> parts_;
+    std::size_t roots_ = 0;
+};
+
+} // namespace kinelux::support
