@@ -9,7 +9,6 @@
 #include <Eigen/Dense>
 
 #include "core/parallel.h"
-#include "geometry/quadrature.h"
 
 namespace kinelux::coefficients {
 
@@ -72,20 +71,12 @@ std::vector<SurfaceNode> thinned(std::span<const SurfaceNode> nodes, const Vec3&
     return kept;
 }
 
-// An element's own rule where its basis is of degree 1 or more; a constant's rule is exact to degree 0 only and would
-// not do for the groups above it.
+// An element's own rule where its basis is of degree 1 or more; the first rule of a constant is exact to degree 1 only and
+// would not do for the groups above it.
 NodeSet element_rule(const ElementShape& element) {
-    if (element.basis.degree() > 0) return element.nodes;
-    constexpr int degree = 2;
-    std::vector<SurfaceNode> nodes;
-    for (const geometry::Facet& facet : element.facets)
-        for (const geometry::TriangleNode& t : geometry::triangle_rule(degree)) {
-            Vec3 x(0.0);
-            for (std::size_t c = 0; c < 3; ++c) x += t.barycentric[c] * facet.corners[c];
-            nodes.push_back({x, facet.normal, t.weight * facet.area});
-        }
+    if (element.basis.degree() > 0) return element.rules[0];
     NodeSet rule;
-    rule.nodes = thinned(nodes, element.centre, element.radius);
+    rule.nodes = thinned(element.rules[1].nodes, element.centre, element.radius);
     rule.basis.assign(rule.nodes.size(), 1.0 / std::sqrt(element.area));
     return rule;
 }

@@ -76,7 +76,7 @@ TEST(ElementTree, linear_functions_survive_the_way_up_and_down) {
     const model::UnknownLayout& layout = it.tree.hierarchy.layout;
     std::vector<double> x(layout.offsets[it.shapes.size()], 0.0);
     for (std::size_t e = 0; e < it.shapes.size(); ++e) {
-        const geometry::NodeSet& rule = it.shapes[e].nodes;
+        const geometry::NodeSet& rule = it.shapes[e].rules[0];
         const std::size_t size = it.shapes[e].basis.size();
         for (std::size_t i = 0; i < rule.nodes.size(); ++i)
             for (std::size_t k = 0; k < size; ++k)
