@@ -47,7 +47,7 @@ struct Residuals {
 
 struct Link {
     ElementPair nodes;
-    double common = 0.0;            ///< squared error of the block itself [1]
+    double common = 0.0;            ///< squared error of one number of the block [1]
     Residuals outside_i, outside_j; ///< what the kernel has outside the basis of i, of j
     float block_error = 0.0f; ///< Frobenius norm
     std::uint32_t rays = 0;
@@ -237,7 +237,7 @@ Link Linker::link_of(ElementPair pair) const {
     const double facing = samples.unoccluded > 0.0 ? samples.unoccluded : samples.facing_bound;
     const bool certain = samples.unoccluded > 0.0 && samples.rays == 0;
     const double sight = certain ? 0.0 : share * (1.0 - share) / (rays + 3.0) * facing * facing;
-    const double eta = std::max(1.0, eta_of(a, b));
+    const double eta = eta_of(a, b);
     const double product = product_error * samples.unoccluded / (eta * eta);
     const double common = sight + product * product;
 
@@ -247,7 +247,8 @@ Link Linker::link_of(ElementPair pair) const {
     if (!b.is_element()) link.outside_j = onto_b.outside;
     link.rays = samples.rays;
     const double outside = std::max(link.outside_i.of_constant, link.outside_j.of_constant);
-    link.block_error = static_cast<float>(std::sqrt(common + outside));
+    const auto numbers = static_cast<double>(a.basis_size * b.basis_size);
+    link.block_error = static_cast<float>(std::sqrt(numbers * common + outside));
     if (onto_a.block[0] > 0.0) link.values.assign(onto_a.block.begin(), onto_a.block.end());
     return link;
 }
@@ -336,8 +337,10 @@ Brought brought(double common, const Power& sent, const Residuals& outside, cons
 }
 
 std::array<Brought, 2> Linker::brought_by(const Link& link) const {
-    return {brought(link.common, power_[link.nodes.j], link.outside_i, link.outside_j),
-            brought(link.common, power_[link.nodes.i], link.outside_j, link.outside_i)};
+    // The block's own error is about alike in each of the receiver's functions.
+    const auto functions = [&](std::uint32_t node) { return static_cast<double>(tree_.nodes[node].basis_size); };
+    return {brought(functions(link.nodes.i) * link.common, power_[link.nodes.j], link.outside_i, link.outside_j),
+            brought(functions(link.nodes.j) * link.common, power_[link.nodes.i], link.outside_j, link.outside_i)};
 }
 
 // A link's share of the squared error of all links. Noise adds up by squares; of what is smeared, a part adds up as it

@@ -17,7 +17,6 @@ import subprocess
 import tempfile
 
 SIZES = (1.4, 0.66, 0.355, 0.232, 0.157, 0.106)  # largest edges [m] for about 1, 2, 4, 8, 16 and 32 thousand elements
-DENSE_UNTIL = 9000                               # elements; above them all pairs are not computed
 ACCURACY = "1%"
 
 
@@ -74,6 +73,8 @@ def main():
     parser.add_argument("scene", type=pathlib.Path, help="furnished.toml, with its meshes beside it")
     parser.add_argument("--degrees", type=int, nargs="*", default=[0, 1])
     parser.add_argument("--sizes", type=float, nargs="*", default=SIZES, help="largest edges of elements [m], falling")
+    parser.add_argument("--all-pairs-until", type=int, default=9000, metavar="ELEMENTS",
+                        help="larger cases are computed with links only (default 9000)")
     options = parser.parse_args()
     print("degree  groups  elements    blocks     links     Mrays    CPU s    wall s  peak MiB  solve s  exponent  difference")
     for degree in options.degrees:
@@ -83,7 +84,7 @@ def main():
                 case = pathlib.Path(folder) / "case"
                 elements = prepare(options.programs, options.scene, case, degree, size)
                 expected = None
-                for groups in ("never", "always") if elements <= DENSE_UNTIL else ("always",):
+                for groups in ("never", "always") if elements <= options.all_pairs_until else ("always",):
                     cpu, record, solved = compute(options.programs, case, groups)
                     found = radiosity(case)
                     exponent = "-"

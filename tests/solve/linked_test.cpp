@@ -16,7 +16,7 @@ namespace {
 
 using coefficients::Grouping;
 
-// Two rooms in one, joined past a wall that ends below the ceiling, with a box on the floor and a lamp.
+// A room with a screen across it, a box and a lamp.
 struct Rooms {
     model::PatchSet set;
     model::Scene scene = support::plain_scene(2, 0.6);
@@ -26,8 +26,8 @@ struct Rooms {
 
     explicit Rooms(int n, int degree = 1) {
         set.patches = support::box(Vec3(0), Vec3(6, 3, 2.5), support::Facing::Inwards);
-        for (const auto& [low, high] : {std::pair(Vec3(2.9, 0.001, 0.001), Vec3(3.1, 2.999, 1.6)),
-                                        std::pair(Vec3(0.8, 0.9, 0.001), Vec3(1.5, 1.9, 0.7)),
+        for (const auto& [low, high] : {std::pair(Vec3(2.9, 0.3, 0.3), Vec3(3.1, 2.7, 1.9)),
+                                        std::pair(Vec3(0.8, 0.9, 0.25), Vec3(1.5, 1.9, 0.8)),
                                         std::pair(Vec3(4.2, 1.2, 2.2), Vec3(4.8, 1.8, 2.3))})
             for (const auto& patch : support::box(low, high, support::Facing::Outwards)) set.patches.push_back(patch);
         for (std::size_t p = set.patches.size() - 6; p < set.patches.size(); ++p)
