@@ -22,10 +22,12 @@ struct Options {
     std::uint32_t max_sweeps = solve::SolveOptions{}.max_sweeps;
 
     explicit Options(cli::OptionTable& table) {
-        table.add({.member = &method,
-                   .flags = "--method",
-                   .help = "sweeps or conjugate gradients from the frames before, or progressive refinement from zero",
-                   .words = {"gauss-seidel", "conjugate-gradients", "shooting"}});
+        table.add(
+            {.member = &method,
+             .flags = "--method",
+             .help =
+                 "sweeps or conjugate gradients from the frames before, or progressive refinement from zero",
+             .words = {"gauss-seidel", "conjugate-gradients", "shooting"}});
         table.add({.member = &tolerance,
                    .flags = "--tolerance",
                    .help = "of the residual relative to the exitance",

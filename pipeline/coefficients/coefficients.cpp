@@ -44,7 +44,7 @@ Ball bounding_ball(std::span<const ElementShape> elements, ObjectId object) {
 
 // Balls that cover each moving body at all frames; neighbouring positions share one.
 std::vector<Ball> swept_balls(std::span<const ElementShape> elements, const model::Scene& scene,
-                                  const model::Plan& plan) {
+                              const model::Plan& plan) {
     std::vector<Ball> result;
     for (const ObjectId object : plan.moving_objects) {
         const Ball rest = bounding_ball(elements, object);
@@ -167,7 +167,8 @@ void group_distant_pairs(std::span<const ElementShape> elements, const model::Sc
     if (members.size() < 2) return;
     bool moving_light = false;
     for (std::size_t i = 0; i < elements.size(); ++i)
-        moving_light = moving_light || (builder.rides(i) && scene.materials[elements[i].material.value].emits());
+        moving_light =
+            moving_light || (builder.rides(i) && scene.materials[elements[i].material.value].emits());
     ElementTree tree = build_element_tree(elements, members, occluders);
     LinkedPairs pairs =
         link_groups(tree, elements, even_light(elements, scene), occluders, options,
@@ -199,7 +200,8 @@ double linked_memory_mib(std::span<const ElementShape> elements, const model::Hi
     double bytes = static_cast<double>(hierarchy.links.entries.size() * sizeof(model::BlockEntry) +
                                        hierarchy.links.values.size() * sizeof(float));
     for (const ElementPair& pair : near)
-        bytes += static_cast<double>(elements[pair.i].basis.size() * elements[pair.j].basis.size() * sizeof(float) +
+        bytes += static_cast<double>(elements[pair.i].basis.size() * elements[pair.j].basis.size() *
+                                         sizeof(float) +
                                      sizeof(model::BlockEntry));
     return bytes / (1024.0 * 1024.0);
 }

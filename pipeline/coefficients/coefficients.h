@@ -31,8 +31,10 @@ enum class Grouping : std::uint8_t {
 
 struct GroupingOptions {
     Grouping use = Grouping::Auto;
-    std::size_t most_elements = 8000; ///< up to so many every pair is stored: below about 1 GiB, at one unknown each
-    double share = 0.5; ///< of the scene's accuracy that links may take, the rest is the blocks' and the basis' [1]
+    std::size_t most_elements =
+        8000; ///< up to so many every pair is stored: below about 1 GiB, at one unknown each
+    double share =
+        0.5; ///< of the scene's accuracy that links may take, the rest is the blocks' and the basis' [1]
 };
 
 /// The blocks of all pairs at rest relative to each other, with the occlusion by bodies that never move; and the lists

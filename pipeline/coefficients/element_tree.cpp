@@ -20,7 +20,8 @@ using geometry::SurfaceNode;
 
 constexpr std::size_t moments = 10;         ///< polynomials of degree <= 2 in three coordinates
 constexpr double least_cone_cosine = 0.866; ///< wider groups are divided by normal
-constexpr double flat_ratio = 1e-6; ///< of variances: a group thinner than a thousandth of its length counts as flat
+constexpr double flat_ratio =
+    1e-6; ///< of variances: a group thinner than a thousandth of its length counts as flat
 constexpr double rank_tolerance = 1e-9; ///< of moments, relative to the largest
 
 // The moments of nodes as columns, in coordinates relative to a ball so that all are of order one.
@@ -65,9 +66,11 @@ std::vector<SurfaceNode> thinned(std::span<const SurfaceNode> nodes, const Vec3&
     for (const SurfaceNode& node : nodes) {
         kept.push_back(node);
         if (kept.size() >= 2 * moments)
-            while (drop_one(kept, centre, radius)) {}
+            while (drop_one(kept, centre, radius)) {
+            }
     }
-    while (drop_one(kept, centre, radius)) {}
+    while (drop_one(kept, centre, radius)) {
+    }
     return kept;
 }
 
@@ -117,7 +120,8 @@ void join_cones(const TreeNode& a, const TreeNode& b, TreeNode& group) {
     group.mean_normal = glm::length(sum) > 1e-9 * group.area ? glm::normalize(sum) : a.mean_normal;
     double widest = 0.0;
     for (const TreeNode* child : {&a, &b}) {
-        const double between = std::acos(std::clamp(glm::dot(group.mean_normal, child->mean_normal), -1.0, 1.0));
+        const double between =
+            std::acos(std::clamp(glm::dot(group.mean_normal, child->mean_normal), -1.0, 1.0));
         widest = std::max(widest, between + std::acos(std::clamp(child->cone_cosine, -1.0, 1.0)));
     }
     group.cone_cosine = std::cos(std::min(widest, std::numbers::pi));
@@ -151,7 +155,8 @@ void set_group_basis(TreeNode& group) {
 
 class Builder {
 public:
-    Builder(std::span<const std::uint32_t> members, ElementTree& tree) : tree_(tree), order_(members.begin(), members.end()) {}
+    Builder(std::span<const std::uint32_t> members, ElementTree& tree)
+        : tree_(tree), order_(members.begin(), members.end()) {}
 
     void build() {
         const auto buried = std::stable_partition(order_.begin(), order_.end(),
@@ -199,8 +204,8 @@ private:
         const double cut = 0.5 * (low[axis] + high[axis]);
         const auto from = order_.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto to = order_.begin() + static_cast<std::ptrdiff_t>(end);
-        const auto middle = std::stable_partition(
-            from, to, [&](std::uint32_t element) { return key(element)[axis] < cut; });
+        const auto middle =
+            std::stable_partition(from, to, [&](std::uint32_t element) { return key(element)[axis] < cut; });
         const bool one_sided = middle == from || middle == to;
         return one_sided ? begin + (end - begin) / 2 : static_cast<std::size_t>(middle - order_.begin());
     }
@@ -233,7 +238,8 @@ private:
 // their values fix them; they are found from the rule of the group by least squares.
 class GroupFunctions {
 public:
-    explicit GroupFunctions(const TreeNode& group) : centre_(group.centre), radius_(group.radius), size_(group.basis_size) {
+    explicit GroupFunctions(const TreeNode& group)
+        : centre_(group.centre), radius_(group.radius), size_(group.basis_size) {
         const auto rows = static_cast<Eigen::Index>(group.rule.nodes.size());
         const auto columns = static_cast<Eigen::Index>(size_);
         Eigen::MatrixXd positions(rows, 4), values(rows, columns);
@@ -261,7 +267,8 @@ private:
     Eigen::MatrixXd coefficients_; ///< 4 x size
 };
 
-void append_restriction(const GroupFunctions& functions, const TreeNode& child, std::vector<double>& restrictions) {
+void append_restriction(const GroupFunctions& functions, const TreeNode& child,
+                        std::vector<double>& restrictions) {
     const std::size_t columns = child.basis_size, offset = restrictions.size();
     restrictions.resize(offset + functions.size() * columns, 0.0);
     for (std::size_t i = 0; i < child.rule.nodes.size(); ++i) {

@@ -30,7 +30,8 @@ void add_links(const model::Coefficients& coefficients, std::span<const geometry
 }
 
 // Adds the links' error, which is known for all of them together, to each factor in proportion to what it carries.
-void add_link_errors(const model::Hierarchy& hierarchy, std::span<const double> exchange, std::vector<double>& error) {
+void add_link_errors(const model::Hierarchy& hierarchy, std::span<const double> exchange,
+                     std::vector<double>& error) {
     for (std::size_t k = 0; k < error.size(); ++k) error[k] += hierarchy.error_estimate * exchange[k];
 }
 

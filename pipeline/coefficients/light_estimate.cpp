@@ -11,7 +11,7 @@ namespace kinelux::coefficients {
 
 namespace {
 
-constexpr int bounces = 4;        ///< of light through links: what comes later is spread evenly
+constexpr int bounces = 4;          ///< of light through links: what comes later is spread evenly
 constexpr double least_share = 0.1; ///< of the even light, for what near elements send
 
 double mean(const std::vector<double>& channels) {
@@ -50,8 +50,8 @@ LightEstimate linked_light(const LightEstimate& even, std::span<const geometry::
             sent[offsets[e]] = light.radiosity[e] * std::sqrt(elements[e].area);
         model::add_link_transport(hierarchy, 1, sent, arrived);
         for (std::size_t e = 0; e < elements.size(); ++e) {
-            light.irradiance[e] = std::max(arrived[offsets[e]] / std::sqrt(elements[e].area),
-                                           least_share * even.irradiance[e]);
+            light.irradiance[e] =
+                std::max(arrived[offsets[e]] / std::sqrt(elements[e].area), least_share * even.irradiance[e]);
             light.radiosity[e] = light.exitance[e] + light.reflectance[e] * light.irradiance[e];
         }
     }

@@ -49,7 +49,7 @@ struct Link {
     ElementPair nodes;
     double common = 0.0;            ///< squared error of one number of the block [1]
     Residuals outside_i, outside_j; ///< what the kernel has outside the basis of i, of j
-    float block_error = 0.0f; ///< Frobenius norm
+    float block_error = 0.0f;       ///< Frobenius norm
     std::uint32_t rays = 0;
     std::vector<float> values; ///< empty: hidden
 };
@@ -73,9 +73,9 @@ struct Examined {
 
 // Kernel and visibility of all pairs of nodes of two rules.
 struct Samples {
-    std::vector<double> kernel;  ///< with visibility [1/m2], rows of A
-    double unoccluded = 0.0;     ///< the block's constant part without visibility
-    double facing_bound = 0.0;   ///< the same with the cosines' absolute values
+    std::vector<double> kernel; ///< with visibility [1/m2], rows of A
+    double unoccluded = 0.0;    ///< the block's constant part without visibility
+    double facing_bound = 0.0;  ///< the same with the cosines' absolute values
     std::uint32_t rays = 0, hidden = 0;
 };
 
@@ -84,7 +84,8 @@ double highest_above(const TreeNode& a, const TreeNode& b) {
     double reach = 0.0; // over the boxes, for the cone's axis
     for (int axis = 0; axis < 3; ++axis) {
         const double n = a.mean_normal[axis];
-        reach += n > 0.0 ? n * (b.box_high[axis] - a.box_low[axis]) : n * (b.box_low[axis] - a.box_high[axis]);
+        reach +=
+            n > 0.0 ? n * (b.box_high[axis] - a.box_low[axis]) : n * (b.box_low[axis] - a.box_high[axis]);
     }
     const double spread = std::sqrt(std::max(0.0, 2.0 - 2.0 * a.cone_cosine)); // of a normal from the axis
     return reach + spread * (glm::distance(a.centre, b.centre) + a.radius + b.radius);
@@ -100,8 +101,10 @@ bool faces_away(const TreeNode& a, const TreeNode& b) {
 bool may_enter(const Ball& ball, const TreeNode& a, const TreeNode& b) {
     const Vec3 axis = b.centre - a.centre;
     const double length2 = glm::dot(axis, axis);
-    const double t = length2 > 0.0 ? std::clamp(glm::dot(ball.centre - a.centre, axis) / length2, 0.0, 1.0) : 0.0;
-    if (glm::distance(ball.centre, a.centre + t * axis) > ball.radius + std::max(a.radius, b.radius)) return false;
+    const double t =
+        length2 > 0.0 ? std::clamp(glm::dot(ball.centre - a.centre, axis) / length2, 0.0, 1.0) : 0.0;
+    if (glm::distance(ball.centre, a.centre + t * axis) > ball.radius + std::max(a.radius, b.radius))
+        return false;
     const Vec3 low = glm::min(a.box_low, b.box_low) - ball.radius;
     const Vec3 high = glm::max(a.box_high, b.box_high) + ball.radius;
     return glm::all(glm::lessThanEqual(low, ball.centre)) && glm::all(glm::lessThanEqual(ball.centre, high));
@@ -118,7 +121,12 @@ public:
     Linker(const ElementTree& tree, std::span<const geometry::ElementShape> elements,
            const LightEstimate& light, const visibility::Occluders& occluders,
            const kernel::TransportOptions& options, const LinkOptions& link_options)
-        : tree_(tree), elements_(elements), light_(light), occluders_(occluders), options_(options), link_options_(link_options) {}
+        : tree_(tree),
+          elements_(elements),
+          light_(light),
+          occluders_(occluders),
+          options_(options),
+          link_options_(link_options) {}
 
     LinkedPairs run();
 
@@ -257,7 +265,7 @@ Examined Linker::examine(ElementPair pair, double limit) const {
     const TreeNode &a = tree_.nodes[pair.i], &b = tree_.nodes[pair.j];
     const bool elements = a.is_element() && b.is_element();
     if (elements && !kernel::may_exchange(elements_[pair.i], elements_[pair.j])) return {};
-    const Examined undivided{elements ? Outcome::Near : Outcome::Divide, {}};
+    Examined undivided{elements ? Outcome::Near : Outcome::Divide, {}};
     if (pair.i == pair.j) return undivided;
     if (!elements && faces_away(a, b)) return {};
     if (eta_of(a, b) < least_eta) return undivided;
@@ -269,7 +277,9 @@ Examined Linker::examine(ElementPair pair, double limit) const {
 }
 
 void Linker::append_children(ElementPair pair, std::vector<ElementPair>& pairs) const {
-    const auto append = [&](std::uint32_t i, std::uint32_t j) { pairs.push_back({std::min(i, j), std::max(i, j)}); };
+    const auto append = [&](std::uint32_t i, std::uint32_t j) {
+        pairs.push_back({std::min(i, j), std::max(i, j)});
+    };
     const TreeNode &a = tree_.nodes[pair.i], &b = tree_.nodes[pair.j];
     if (pair.i == pair.j) {
         append(a.first, a.first);
@@ -338,9 +348,12 @@ Brought brought(double common, const Power& sent, const Residuals& outside, cons
 
 std::array<Brought, 2> Linker::brought_by(const Link& link) const {
     // The block's own error is about alike in each of the receiver's functions.
-    const auto functions = [&](std::uint32_t node) { return static_cast<double>(tree_.nodes[node].basis_size); };
-    return {brought(functions(link.nodes.i) * link.common, power_[link.nodes.j], link.outside_i, link.outside_j),
-            brought(functions(link.nodes.j) * link.common, power_[link.nodes.i], link.outside_j, link.outside_i)};
+    const auto functions = [&](std::uint32_t node) {
+        return static_cast<double>(tree_.nodes[node].basis_size);
+    };
+    return {
+        brought(functions(link.nodes.i) * link.common, power_[link.nodes.j], link.outside_i, link.outside_j),
+        brought(functions(link.nodes.j) * link.common, power_[link.nodes.i], link.outside_j, link.outside_i)};
 }
 
 // A link's share of the squared error of all links. Noise adds up by squares; of what is smeared, a part adds up as it
@@ -367,7 +380,8 @@ void Linker::add_up_smeared() {
         smeared_[tree_.nodes[n].second] += smeared_[n];
     }
     for (std::size_t n = elements_.size(); n < tree_.nodes.size(); ++n) {
-        const TreeNode &node = tree_.nodes[n], &first = tree_.nodes[node.first], &second = tree_.nodes[node.second];
+        const TreeNode &node = tree_.nodes[n], &first = tree_.nodes[node.first],
+                       &second = tree_.nodes[node.second];
         smeared_[n] = (first.area * smeared_[node.first] + second.area * smeared_[node.second]) / node.area;
     }
 }
@@ -415,10 +429,12 @@ LinkedPairs Linker::result() const {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < links_.size(); ++k)
         if (!links_[k].values.empty()) order.push_back(k);
-    std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return links_[x].nodes < links_[y].nodes; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t x, std::size_t y) { return links_[x].nodes < links_[y].nodes; });
     for (const std::size_t k : order) {
         const Link& link = links_[k];
-        pairs.links.entries.push_back({link.nodes.i, link.nodes.j, pairs.links.values.size(), link.block_error});
+        pairs.links.entries.push_back(
+            {link.nodes.i, link.nodes.j, pairs.links.values.size(), link.block_error});
         pairs.links.values.insert(pairs.links.values.end(), link.values.begin(), link.values.end());
     }
     return pairs;
@@ -427,9 +443,8 @@ LinkedPairs Linker::result() const {
 } // namespace
 
 LinkedPairs link_groups(const ElementTree& tree, std::span<const geometry::ElementShape> elements,
-                        const LightEstimate& light,
-                        const visibility::Occluders& occluders, const kernel::TransportOptions& options,
-                        const LinkOptions& link_options) {
+                        const LightEstimate& light, const visibility::Occluders& occluders,
+                        const kernel::TransportOptions& options, const LinkOptions& link_options) {
     return Linker(tree, elements, light, occluders, options, link_options).run();
 }
 

@@ -20,16 +20,17 @@ struct Ball {
 };
 
 struct LinkOptions {
-    double tolerance = 5e-3; ///< relative L2 error of irradiance that all links together may be expected to add [1]
+    double tolerance =
+        5e-3; ///< relative L2 error of irradiance that all links together may be expected to add [1]
     std::span<const Ball> movers; ///< pairs that a mover may come between stay element pairs
     bool refine_light = true;     ///< by the first links: where all light comes from elements of the tree
 };
 
 /// Transport divided between links and pairs of elements.
 struct LinkedPairs {
-    model::BlockSet links;                     ///< between nodes of the tree
-    std::vector<model::ElementPair> near;      ///< all other pairs that may exchange light, sorted
-    double error_estimate = 0.0;               ///< relative L2 error of irradiance [1]
+    model::BlockSet links;                ///< between nodes of the tree
+    std::vector<model::ElementPair> near; ///< all other pairs that may exchange light, sorted
+    double error_estimate = 0.0;          ///< relative L2 error of irradiance [1]
     double rays = 0.0;
 };
 
@@ -43,8 +44,7 @@ struct LinkedPairs {
 /// @param light    even light; refined by the first links unless a body that moves emits
 /// @param options  occlusion and occluders as for blocks
 LinkedPairs link_groups(const ElementTree& tree, std::span<const geometry::ElementShape> elements,
-                        const LightEstimate& light,
-                        const visibility::Occluders& occluders, const kernel::TransportOptions& options,
-                        const LinkOptions& link_options);
+                        const LightEstimate& light, const visibility::Occluders& occluders,
+                        const kernel::TransportOptions& options, const LinkOptions& link_options);
 
 } // namespace kinelux::coefficients

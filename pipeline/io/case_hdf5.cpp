@@ -249,7 +249,8 @@ void put_blocks(Hdf5Writer& file, const std::string& name, const model::BlockSet
     const auto& [entries, values] = blocks;
     file.dataset(name + "/i", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.i; }));
     file.dataset(name + "/j", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.j; }));
-    file.dataset(name + "/offset", column<std::uint64_t>(entries, [](const BlockEntry& b) { return b.offset; }));
+    file.dataset(name + "/offset",
+                 column<std::uint64_t>(entries, [](const BlockEntry& b) { return b.offset; }));
     file.dataset(name + "/error", column<float>(entries, [](const BlockEntry& b) { return b.error; }));
     file.dataset(name + "/values", values);
 }
@@ -272,9 +273,12 @@ void put_hierarchy(Hdf5Writer& file, const model::Hierarchy& hierarchy) {
     const auto& groups = hierarchy.groups;
     file.attribute("links_error_estimate", hierarchy.error_estimate);
     file.dataset("hierarchy/layout_offsets", hierarchy.layout.offsets);
-    file.dataset("hierarchy/first", column<std::uint32_t>(groups, [](const ElementGroup& g) { return g.first; }));
-    file.dataset("hierarchy/second", column<std::uint32_t>(groups, [](const ElementGroup& g) { return g.second; }));
-    file.dataset("hierarchy/offset", column<std::uint64_t>(groups, [](const ElementGroup& g) { return g.offset; }));
+    file.dataset("hierarchy/first",
+                 column<std::uint32_t>(groups, [](const ElementGroup& g) { return g.first; }));
+    file.dataset("hierarchy/second",
+                 column<std::uint32_t>(groups, [](const ElementGroup& g) { return g.second; }));
+    file.dataset("hierarchy/offset",
+                 column<std::uint64_t>(groups, [](const ElementGroup& g) { return g.offset; }));
     file.dataset("hierarchy/restrictions", hierarchy.restrictions);
     put_blocks(file, "links", hierarchy.links);
 }

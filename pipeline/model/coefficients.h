@@ -37,8 +37,9 @@ struct BlockSet {
 /// A group of elements that exchange light with distant groups as one: a node of the hierarchy with two children.
 struct ElementGroup {
     std::uint32_t first = 0, second = 0; ///< child nodes; each smaller than the group's own node
-    std::uint64_t offset = 0; ///< of its restrictions from the first child, then from the second: count(group) x
-                              ///< count(child) row-major values each
+    std::uint64_t offset =
+        0; ///< of its restrictions from the first child, then from the second: count(group) x
+           ///< count(child) row-major values each
 };
 
 /// Binary trees over elements, and the transport between their nodes. Node n < elements is element n with its own
@@ -50,7 +51,7 @@ struct Hierarchy {
     UnknownLayout layout; ///< of all nodes; empty: there is no hierarchy, all pairs are element blocks
     std::vector<ElementGroup> groups;
     std::vector<double> restrictions;
-    BlockSet links;             ///< between nodes
+    BlockSet links;              ///< between nodes
     double error_estimate = 0.0; ///< relative L2 error of irradiance that the links are expected to add [1]
 
     bool empty() const { return layout.offsets.empty(); }

@@ -8,8 +8,8 @@ namespace kinelux::model {
 namespace {
 
 // y += G x, or G^T x, for one row-major block of rows x columns.
-void add_block(const float* values, std::size_t rows, std::size_t columns, std::size_t channels, const double* x,
-               double* y) {
+void add_block(const float* values, std::size_t rows, std::size_t columns, std::size_t channels,
+               const double* x, double* y) {
     for (std::size_t k = 0; k < rows; ++k)
         for (std::size_t l = 0; l < columns; ++l)
             for (std::size_t c = 0; c < channels; ++c)
@@ -37,7 +37,8 @@ void for_children(const Hierarchy& hierarchy, std::size_t g, const Visit& visit)
 
 } // namespace
 
-std::vector<double> gather_groups(const Hierarchy& hierarchy, std::size_t channels, std::span<const double> x) {
+std::vector<double> gather_groups(const Hierarchy& hierarchy, std::size_t channels,
+                                  std::span<const double> x) {
     const UnknownLayout& layout = hierarchy.layout;
     std::vector<double> all(layout.unknowns() * channels, 0.0);
     std::copy(x.begin(), x.end(), all.begin());

@@ -11,7 +11,8 @@
 namespace kinelux::model {
 
 /// The coefficients of all nodes, from those of the elements. @param x  elements' unknowns x channels
-std::vector<double> gather_groups(const Hierarchy& hierarchy, std::size_t channels, std::span<const double> x);
+std::vector<double> gather_groups(const Hierarchy& hierarchy, std::size_t channels,
+                                  std::span<const double> x);
 
 /// Adds what has arrived at groups to the elements below them.
 /// @param arrived  all nodes' unknowns x channels; used up

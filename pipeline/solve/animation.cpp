@@ -169,7 +169,8 @@ void add_link_errors(const model::Hierarchy& hierarchy, std::span<const double> 
     const auto& layout = hierarchy.layout;
     const std::vector<double> sent = model::gather_groups(hierarchy, channels, radiosity);
     const auto size = [&](std::size_t node) {
-        return square_sum(std::span(sent).subspan(layout.offsets[node] * channels, layout.count(node) * channels));
+        return square_sum(
+            std::span(sent).subspan(layout.offsets[node] * channels, layout.count(node) * channels));
     };
     std::vector<double> at_node(layout.elements(), 0.0), area(areas.begin(), areas.end());
     for (const model::BlockEntry& link : hierarchy.links.entries) {

@@ -32,7 +32,9 @@ double norm_of_product(std::span<const double> x, std::span<const double> y) {
     return std::sqrt(sum);
 }
 
-double ratio(double numerator, double denominator) { return denominator > 0.0 ? numerator / denominator : 0.0; }
+double ratio(double numerator, double denominator) {
+    return denominator > 0.0 ? numerator / denominator : 0.0;
+}
 
 class Iteration {
 public:
@@ -44,8 +46,7 @@ public:
         const std::size_t n = roots_.size();
         unknown_.assign(n, 0.0);
         for (std::size_t k = 0; k < n; ++k)
-            if (roots_[k] > 0.0)
-                unknown_[k] = (solution_.radiosity[k] - system_.exitance[k]) / roots_[k];
+            if (roots_[k] > 0.0) unknown_[k] = (solution_.radiosity[k] - system_.exitance[k]) / roots_[k];
         update_radiosity();
         update_irradiance();
         residual_.resize(n);
@@ -100,7 +101,8 @@ void conjugate_gradients(const System& system, const SolveOptions& options, doub
     ++solution.sweeps;
     // The residual carried along drifts from the true one; a restart from the true one costs one product.
     while (iteration.residual_norm() > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
-        while (iteration.residual_norm() > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
+        while (iteration.residual_norm() > options.tolerance * scale &&
+               solution.sweeps < options.max_sweeps) {
             iteration.step();
             ++solution.sweeps;
         }

@@ -101,8 +101,7 @@ void shoot(const System& system, const RowOperator& rows, const SolveOptions& op
         const std::size_t first = layout.offsets[shooter] * channels,
                           count = layout.count(shooter) * channels;
         std::fill(arriving.begin(), arriving.end(), 0.0);
-        rows.scatter(shooter, channels, std::span<const double>(unshot).subspan(first, count),
-                                 arriving);
+        rows.scatter(shooter, channels, std::span<const double>(unshot).subspan(first, count), arriving);
         for (std::size_t k = first; k < first + count; ++k) {
             solution.radiosity[k] += unshot[k];
             unshot[k] = 0.0;
@@ -130,8 +129,9 @@ SystemSolution solve_system(const System& system, const SolveOptions& options,
     const RowOperator* rows = system.transport.rows();
     if (options.method == Method::Shooting) {
         if (rows == nullptr)
-            throw core::OptionError("shooting needs the blocks of all pairs of elements, but distant groups are "
-                                    "linked; compute the coefficients with --groups never, or use another method");
+            throw core::OptionError(
+                "shooting needs the blocks of all pairs of elements, but distant groups are "
+                "linked; compute the coefficients with --groups never, or use another method");
         shoot(system, *rows, options, scale, solution);
     } else {
         const auto& from = start.empty() ? system.exitance : start;

@@ -46,7 +46,8 @@ TEST(Coefficients, groups_are_linked_from_a_number_of_elements_on_that_can_be_ch
     const auto shapes = support::shapes_of(set, 4, 0);
     const auto occluders = support::occluders_of(set, scene);
     const auto links = [&](const GroupingOptions& grouping) {
-        return compute_coefficients(shapes, scene, {.degree = 0}, occluders, {}, 1e6, grouping).hierarchy.links;
+        return compute_coefficients(shapes, scene, {.degree = 0}, occluders, {}, 1e6, grouping)
+            .hierarchy.links;
     };
     EXPECT_TRUE(links({.most_elements = shapes.size()}).entries.empty());
     EXPECT_FALSE(links({.most_elements = shapes.size() - 1}).entries.empty());
@@ -64,6 +65,7 @@ TEST(FormFactors, rows_of_objects_sum_to_one_through_links) {
         compute_coefficients(shapes, scene, {.degree = 0}, occluders, {}, 1e6, {.use = Grouping::Always});
     ASSERT_FALSE(coefficients.hierarchy.links.entries.empty());
     std::vector<std::uint32_t> groups;
+    groups.reserve(shapes.size());
     for (const auto& shape : shapes) groups.push_back(shape.object.value);
     const auto factors = form_factors(coefficients, shapes, groups, 2);
     EXPECT_NEAR(factors[0].value + factors[1].value, 1.0, 0.02);

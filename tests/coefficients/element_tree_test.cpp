@@ -95,7 +95,8 @@ TEST(ElementTree, what_lies_below_a_box_is_grouped_apart) {
     const Tree it(0);
     const TreeNode& root = it.tree.nodes[it.tree.root];
     const TreeNode& buried = it.tree.nodes[root.second];
-    EXPECT_NEAR(buried.area, 1.0, 1e-9) << "the floor below the box; the box's own lower side looks out of the room";
+    EXPECT_NEAR(buried.area, 1.0, 1e-9)
+        << "the floor below the box; the box's own lower side looks out of the room";
 }
 
 } // namespace

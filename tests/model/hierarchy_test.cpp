@@ -65,8 +65,8 @@ TEST(Hierarchy, link_transport_is_symmetric) {
 TEST(CheckHierarchy, whole_one_passes) { EXPECT_NO_THROW(check(tree_of_four())); }
 
 TEST(CheckHierarchy, groups_are_trees_over_nodes_before_them) {
-    for (const ElementGroup wrong : {ElementGroup{4, 7, 12}, ElementGroup{4, 6, 12}, ElementGroup{4, 4, 12},
-                                     ElementGroup{0, 5, 12}}) {
+    for (const ElementGroup wrong :
+         {ElementGroup{4, 7, 12}, ElementGroup{4, 6, 12}, ElementGroup{4, 4, 12}, ElementGroup{0, 5, 12}}) {
         Coefficients broken = tree_of_four();
         broken.hierarchy.groups[2] = wrong;
         EXPECT_THROW(check(broken), core::GeometryError);

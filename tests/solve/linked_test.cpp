@@ -29,7 +29,8 @@ struct Rooms {
         for (const auto& [low, high] : {std::pair(Vec3(2.9, 0.3, 0.3), Vec3(3.1, 2.7, 1.9)),
                                         std::pair(Vec3(0.8, 0.9, 0.25), Vec3(1.5, 1.9, 0.8)),
                                         std::pair(Vec3(4.2, 1.2, 2.2), Vec3(4.8, 1.8, 2.3))})
-            for (const auto& patch : support::box(low, high, support::Facing::Outwards)) set.patches.push_back(patch);
+            for (const auto& patch : support::box(low, high, support::Facing::Outwards))
+                set.patches.push_back(patch);
         for (std::size_t p = set.patches.size() - 6; p < set.patches.size(); ++p)
             set.patches[p].material = MaterialId(1);
         scene.materials.push_back({"lamp", {0.6}, {40.0}, model::Sides::Front});
@@ -47,9 +48,9 @@ struct Rooms {
         std::vector<double> exitance, reflectance(shapes.size(), rho);
         for (const auto& shape : shapes)
             exitance.push_back(exitance_of_all + scene.materials[shape.material.value].exitance[0]);
-        return solve_system({transport, 1, constant_coefficients(transport.layout(), 1, areas, exitance), reflectance,
-                             areas},
-                            {.tolerance = 1e-6}, {});
+        return solve_system(
+            {transport, 1, constant_coefficients(transport.layout(), 1, areas, exitance), reflectance, areas},
+            {.tolerance = 1e-6}, {});
     }
 };
 
@@ -131,10 +132,12 @@ TEST(ConjugateGradients, need_far_fewer_sweeps_than_gauss_seidel_between_bright_
     const Rooms rooms(2);
     const auto all = rooms.compute(Grouping::Never);
     const BlockOperator blocks(all.layout, all.static_blocks);
-    const std::vector<double> exitance = constant_coefficients(all.layout, 1, rooms.areas, std::vector<double>(rooms.shapes.size(), 1.0)),
+    const std::vector<double> exitance = constant_coefficients(all.layout, 1, rooms.areas,
+                                                               std::vector<double>(rooms.shapes.size(), 1.0)),
                               rho(rooms.shapes.size(), 0.95);
     const auto sweeps = [&](Method method) {
-        const auto solution = solve_system({blocks, 1, exitance, rho, rooms.areas}, {.method = method, .tolerance = 1e-6}, {});
+        const auto solution =
+            solve_system({blocks, 1, exitance, rho, rooms.areas}, {.method = method, .tolerance = 1e-6}, {});
         EXPECT_TRUE(solution.converged);
         return solution.sweeps;
     };
@@ -183,12 +186,12 @@ TEST(LinkedOperator, frames_with_a_moving_lamp_equal_those_of_all_pairs) {
     const auto tree = support::uniform_elements(rooms.set, 5);
     const std::vector<std::uint32_t> frames{0, 1, 2};
     const auto solved = [&](Grouping use) {
-        const auto coefficients = coefficients::compute_coefficients(rooms.shapes, rooms.scene, rooms.plan, occluders,
-                                                                     options, 1e6, {.use = use});
+        const auto coefficients = coefficients::compute_coefficients(rooms.shapes, rooms.scene, rooms.plan,
+                                                                     occluders, options, 1e6, {.use = use});
         EXPECT_FALSE(coefficients.crossed_pairs.empty());
         motion::FrameUpdater updater(coefficients, rooms.shapes, rooms.scene, rooms.plan, occluders, options);
-        auto solution = solve_animation({rooms.scene, rooms.plan, coefficients, tree.elements, rooms.areas}, updater,
-                                        frames, {.tolerance = 1e-6}, [](const auto&) {});
+        auto solution = solve_animation({rooms.scene, rooms.plan, coefficients, tree.elements, rooms.areas},
+                                        updater, frames, {.tolerance = 1e-6}, [](const auto&) {});
         return std::pair(std::move(solution), coefficients.crossed_pairs);
     };
     const auto [expected, crossed] = solved(Grouping::Never);

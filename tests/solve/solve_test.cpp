@@ -90,7 +90,8 @@ TEST(Solve, a_start_at_the_answer_needs_no_sweep) {
 TEST(Solve, conjugate_gradients_leave_what_does_not_reflect_as_it_is) {
     KnownAnswer known;
     std::fill_n(known.reflectance.begin(), 60, 0.0);
-    const auto solution = solve_system(known.system(), {.method = Method::ConjugateGradients, .tolerance = 1e-9}, {});
+    const auto solution =
+        solve_system(known.system(), {.method = Method::ConjugateGradients, .tolerance = 1e-9}, {});
     EXPECT_TRUE(solution.converged);
     for (std::size_t k = 0; k < std::size_t{known.transport.layout.offsets[20]} * 3; ++k)
         EXPECT_EQ(solution.radiosity[k], known.exitance[k]);
