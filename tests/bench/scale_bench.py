@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How time and memory of the coefficients grow with the number of elements, on the furnished rooms; scripts/bench --scale.
 
-Prints a line per size: blocks of all pairs (never) up to 8,000 elements, links between groups (always) throughout.
+Prints a line per size: blocks of all pairs (never) up to 5,000 elements, links between groups (always) throughout.
 CPU is the processors' time of all threads, peak the memory of the coefficient stage; the exponent is that of CPU time
 from the line above. Where python3-h5py is there, the last column is the relative L2 difference of the radiosity of
 what does not emit from that of all pairs. Measured at an accuracy of 1 %.
@@ -73,8 +73,8 @@ def main():
     parser.add_argument("scene", type=pathlib.Path, help="furnished.toml, with its meshes beside it")
     parser.add_argument("--degrees", type=int, nargs="*", default=[0, 1])
     parser.add_argument("--sizes", type=float, nargs="*", default=SIZES, help="largest edges of elements [m], falling")
-    parser.add_argument("--all-pairs-until", type=int, default=9000, metavar="ELEMENTS",
-                        help="larger cases are computed with links only (default 9000)")
+    parser.add_argument("--all-pairs-until", type=int, default=5000, metavar="ELEMENTS",
+                        help="larger cases are computed with links only (default 5000)")
     options = parser.parse_args()
     print("degree  groups  elements    blocks     links     Mrays    CPU s    wall s  peak MiB  solve s  exponent  difference")
     for degree in options.degrees:
