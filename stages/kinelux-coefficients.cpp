@@ -2,12 +2,22 @@
 #include "coefficients/coefficients.h"
 
 #include <optional>
+#include <string>
 
 #include "cli/stage.h"
 #include "light_case.h"
 #include "reports.h"
 
 using namespace kinelux;
+
+namespace {
+
+coefficients::Grouping grouping(const std::string& word) {
+    if (word == "never") return coefficients::Grouping::Never;
+    return word == "always" ? coefficients::Grouping::Always : coefficients::Grouping::Auto;
+}
+
+} // namespace
 
 int main(int argc, char** argv) {
     cli::Stage stage({.name = "coefficients",
@@ -24,12 +34,18 @@ int main(int argc, char** argv) {
                          .high = 1e9,
                          .unset = "4/5 of the machine's",
                          .decides = cli::Decides::Manners});
+    std::string groups = "auto";
+    stage.options().add(
+        {.member = &groups,
+         .flags = "--groups",
+         .help = "whether distant groups of elements exchange light as one: in large scenes, never, always",
+         .words = {"auto", "never", "always"}});
     return stage.run(argc, argv, [&](cli::Stage&) {
         const auto light = stage.step("read", [&] { return stages::read_light_case(stage.folder()); });
         const auto blocks = stage.step("coefficients", [&] {
-            return coefficients::compute_coefficients(light.elements, light.scene, light.plan,
-                                                      light.occluders, light.transport_options(seed),
-                                                      memory_limit.value_or(cli::default_memory_limit_mib()));
+            return coefficients::compute_coefficients(
+                light.elements, light.scene, light.plan, light.occluders, light.transport_options(seed),
+                memory_limit.value_or(cli::default_memory_limit_mib()), {.use = grouping(groups)});
         });
         stage.step("write", [&] { stage.folder().write_coefficients(blocks); });
         stages::report_coefficients(blocks, light, stage);

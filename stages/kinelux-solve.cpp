@@ -22,10 +22,12 @@ struct Options {
     std::uint32_t max_sweeps = solve::SolveOptions{}.max_sweeps;
 
     explicit Options(cli::OptionTable& table) {
-        table.add({.member = &method,
-                   .flags = "--method",
-                   .help = "sweeps from the frames before, or progressive refinement from zero",
-                   .words = {"gauss-seidel", "shooting"}});
+        table.add(
+            {.member = &method,
+             .flags = "--method",
+             .help =
+                 "sweeps or conjugate gradients from the frames before, or progressive refinement from zero",
+             .words = {"gauss-seidel", "conjugate-gradients", "shooting"}});
         table.add({.member = &tolerance,
                    .flags = "--tolerance",
                    .help = "of the residual relative to the exitance",
@@ -40,7 +42,9 @@ struct Options {
                    .high = 1e9});
     }
     solve::SolveOptions for_target(double target) const {
-        return {.method = method == "shooting" ? solve::Method::Shooting : solve::Method::GaussSeidel,
+        return {.method = method == "shooting"              ? solve::Method::Shooting
+                          : method == "conjugate-gradients" ? solve::Method::ConjugateGradients
+                                                            : solve::Method::GaussSeidel,
                 .tolerance = tolerance.value_or(std::min(1e-4, 0.01 * target)),
                 .max_sweeps = max_sweeps};
     }

@@ -95,9 +95,12 @@ void report_coefficients(const model::Coefficients& blocks, const LightCase& lig
     }
     stage.count("unknowns", blocks.layout.unknowns());
     stage.count("blocks", blocks.static_blocks.entries.size());
+    stage.count("groups", blocks.hierarchy.groups.size());
+    stage.count("links", blocks.hierarchy.links.entries.size());
     stage.count("moving pairs", blocks.moving_pairs.size());
     stage.count("crossed pairs", blocks.crossed_pairs.size());
     stage.count("rays", static_cast<std::uint64_t>(blocks.rays_cast));
+    if (!blocks.hierarchy.empty()) stage.figure("expected error of links", blocks.hierarchy.error_estimate);
     if (blocks.moving_pairs.empty() && !sums.empty())
         stage.figure("largest form factor row", *std::max_element(sums.begin(), sums.end()));
 }

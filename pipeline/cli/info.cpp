@@ -132,6 +132,7 @@ std::string of_coefficients(const io::Hdf5Reader& file) {
     facts.add("unknowns", coefficients.layout.unknowns());
     facts.add("degree", static_cast<std::size_t>(coefficients.degree));
     facts.add("static blocks", coefficients.static_blocks.entries.size());
+    if (!coefficients.hierarchy.empty()) facts.add("links", coefficients.hierarchy.links.entries.size());
     facts.add("moving pairs", coefficients.moving_pairs.size());
     facts.add("crossed pairs", coefficients.crossed_pairs.size());
     return facts.text();

@@ -5,10 +5,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "coefficients/element_tree.h"
+#include "coefficients/links.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -21,11 +24,6 @@ namespace {
 using geometry::ElementShape;
 using model::ElementPair;
 
-struct Sphere {
-    Vec3 centre;
-    double radius;
-};
-
 // The motion that carries each object, or nothing for bodies at rest. Bodies on one motion keep their distance.
 std::vector<std::optional<MotionId>> carriers(const model::Scene& scene, const model::Plan& plan) {
     std::vector<std::optional<MotionId>> result(scene.objects.size());
@@ -34,7 +32,7 @@ std::vector<std::optional<MotionId>> carriers(const model::Scene& scene, const m
     return result;
 }
 
-Sphere bounding_sphere(std::span<const ElementShape> elements, ObjectId object) {
+Ball bounding_ball(std::span<const ElementShape> elements, ObjectId object) {
     Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (const ElementShape& element : elements)
         if (element.object == object) {
@@ -44,15 +42,15 @@ Sphere bounding_sphere(std::span<const ElementShape> elements, ObjectId object) 
     return {0.5 * (low + high), 0.5 * glm::length(high - low)};
 }
 
-// Spheres that cover each moving body at all frames; neighbouring positions share one.
-std::vector<Sphere> swept_spheres(std::span<const ElementShape> elements, const model::Scene& scene,
-                                  const model::Plan& plan) {
-    std::vector<Sphere> result;
+// Balls that cover each moving body at all frames; neighbouring positions share one.
+std::vector<Ball> swept_balls(std::span<const ElementShape> elements, const model::Scene& scene,
+                              const model::Plan& plan) {
+    std::vector<Ball> result;
     for (const ObjectId object : plan.moving_objects) {
-        const Sphere rest = bounding_sphere(elements, object);
+        const Ball rest = bounding_ball(elements, object);
         if (!std::isfinite(rest.radius)) continue;
         const model::Motion& motion = scene.motions[scene.objects[object.value].motion->value];
-        std::optional<Sphere> current;
+        std::optional<Ball> current;
         for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame) {
             const Vec3 centre = geometry::pose_at(motion, scene.time.time_of_frame(frame)).point(rest.centre);
             if (current && glm::distance(current->centre, centre) < 0.5 * rest.radius) {
@@ -61,7 +59,7 @@ std::vector<Sphere> swept_spheres(std::span<const ElementShape> elements, const 
                 continue;
             }
             if (current) result.push_back(*current);
-            current = Sphere{centre, rest.radius};
+            current = Ball{centre, rest.radius};
         }
         result.push_back(*current);
     }
@@ -81,17 +79,29 @@ public:
     RowBuilder(std::span<const ElementShape> elements, const model::Scene& scene, const model::Plan& plan,
                const visibility::Occluders& occluders, const kernel::TransportOptions& options)
         : elements_(elements), occluders_(occluders), options_(options), carriers_(carriers(scene, plan)) {
-        if (plan.moving_occlusion) movers_ = swept_spheres(elements, scene, plan);
+        if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
     }
 
     bool at_rest(std::size_t i, std::size_t j) const {
         return carriers_[elements_[i].object.value] == carriers_[elements_[j].object.value];
     }
 
+    bool rides(std::size_t i) const { return carriers_[elements_[i].object.value].has_value(); }
+    std::span<const Ball> movers() const { return movers_; }
+    std::span<const ElementPair> near() const { return near_; }
+
+    /// From now on only these pairs of elements that rest have blocks; links hold the others. @param near  sorted
+    void restrict_to(std::vector<ElementPair> near) {
+        near_ = std::move(near);
+        grouped_ = true;
+        for (std::size_t i = 0; i < elements_.size(); ++i)
+            if (rides(i)) riding_.push_back(static_cast<std::uint32_t>(i));
+    }
+
     Row build(std::size_t i) const {
         Row row;
-        for (std::size_t j = i; j < elements_.size(); ++j) {
-            const ElementPair pair{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
+        for (const std::uint32_t j : partners(i)) {
+            const ElementPair pair{static_cast<std::uint32_t>(i), j};
             if (!at_rest(i, j)) {
                 row.moving.push_back(pair);
                 continue;
@@ -103,6 +113,23 @@ public:
     }
 
 private:
+    // The elements j >= i whose pair with i is no link's, in order.
+    std::vector<std::uint32_t> partners(std::size_t i) const {
+        const auto number = static_cast<std::uint32_t>(i);
+        std::vector<std::uint32_t> result;
+        if (!grouped_ || rides(i)) {
+            result.resize(elements_.size() - i);
+            std::iota(result.begin(), result.end(), number);
+            return result;
+        }
+        const auto first = std::lower_bound(near_.begin(), near_.end(), ElementPair{number, 0});
+        for (auto pair = first; pair != near_.end() && pair->i == number; ++pair) result.push_back(pair->j);
+        const auto middle = static_cast<std::ptrdiff_t>(result.size());
+        result.insert(result.end(), std::lower_bound(riding_.begin(), riding_.end(), number), riding_.end());
+        std::inplace_merge(result.begin(), result.begin() + middle, result.end());
+        return result;
+    }
+
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
@@ -114,7 +141,7 @@ private:
         if (block.values.empty()) return;
         row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(block.error)});
         for (const double value : block.values) row.values.push_back(static_cast<float>(value));
-        if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Sphere& mover) {
+        if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
                 return geometry::may_pass_between(a, b, mover.centre, mover.radius);
             }))
             row.crossed.push_back(pair);
@@ -124,8 +151,34 @@ private:
     const visibility::Occluders& occluders_;
     kernel::TransportOptions options_;
     std::vector<std::optional<MotionId>> carriers_;
-    std::vector<Sphere> movers_;
+    std::vector<Ball> movers_;
+    bool grouped_ = false;
+    std::vector<ElementPair> near_;
+    std::vector<std::uint32_t> riding_;
 };
+
+// Puts all pairs of elements at rest that may share a link into links; the builder keeps the others.
+void group_distant_pairs(std::span<const ElementShape> elements, const model::Scene& scene,
+                         const visibility::Occluders& occluders, const kernel::TransportOptions& options,
+                         double tolerance, RowBuilder& builder, model::Coefficients& result) {
+    std::vector<std::uint32_t> members;
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        if (!builder.rides(i)) members.push_back(static_cast<std::uint32_t>(i));
+    if (members.size() < 2) return;
+    bool moving_light = false;
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        moving_light =
+            moving_light || (builder.rides(i) && scene.materials[elements[i].material.value].emits());
+    ElementTree tree = build_element_tree(elements, members, occluders);
+    LinkedPairs pairs =
+        link_groups(tree, elements, even_light(elements, scene), occluders, options,
+                    {.tolerance = tolerance, .movers = builder.movers(), .refine_light = !moving_light});
+    result.hierarchy = std::move(tree.hierarchy);
+    result.hierarchy.links = std::move(pairs.links);
+    result.hierarchy.error_estimate = pairs.error_estimate;
+    result.rays_cast = pairs.rays;
+    builder.restrict_to(std::move(pairs.near));
+}
 
 double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder& builder) {
     std::vector<double> bytes(elements.size());
@@ -139,6 +192,18 @@ double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder
     double sum = 0.0;
     for (const double row : bytes) sum += row;
     return sum / (1024.0 * 1024.0);
+}
+
+// Memory of links and of the blocks that remain for near pairs at rest.
+double linked_memory_mib(std::span<const ElementShape> elements, const model::Hierarchy& hierarchy,
+                         std::span<const ElementPair> near) {
+    double bytes = static_cast<double>(hierarchy.links.entries.size() * sizeof(model::BlockEntry) +
+                                       hierarchy.links.values.size() * sizeof(float));
+    for (const ElementPair& pair : near)
+        bytes += static_cast<double>(elements[pair.i].basis.size() * elements[pair.j].basis.size() *
+                                         sizeof(float) +
+                                     sizeof(model::BlockEntry));
+    return bytes / (1024.0 * 1024.0);
 }
 
 } // namespace
@@ -175,14 +240,22 @@ model::UnknownLayout unknown_layout(std::span<const ElementShape> elements) {
 model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elements,
                                          const model::Scene& scene, const model::Plan& plan,
                                          const visibility::Occluders& occluders,
-                                         const kernel::TransportOptions& options, double memory_limit_mib) {
-    const RowBuilder builder(rest_elements, scene, plan, occluders, options);
-    const double bound_mib = memory_bound_mib(rest_elements, builder);
-    if (bound_mib > memory_limit_mib)
+                                         const kernel::TransportOptions& options, double memory_limit_mib,
+                                         const GroupingOptions& grouping) {
+    RowBuilder builder(rest_elements, scene, plan, occluders, options);
+    double needed_mib = memory_bound_mib(rest_elements, builder);
+    const bool large = rest_elements.size() > grouping.most_elements || needed_mib > memory_limit_mib;
+    model::Coefficients result;
+    if (grouping.use == Grouping::Always || (grouping.use == Grouping::Auto && large))
+        group_distant_pairs(rest_elements, scene, occluders, options, grouping.share * scene.accuracy.target,
+                            builder, result);
+    if (!result.hierarchy.empty())
+        needed_mib = linked_memory_mib(rest_elements, result.hierarchy, builder.near());
+    if (needed_mib > memory_limit_mib)
         throw core::ResourceError(fmt::format("the transport blocks of {} elements may take {:.0f} MiB, "
                                               "{:.0f} MiB are allowed; ask for a lower "
                                               "accuracy, a larger element size, or raise --memory-limit",
-                                              rest_elements.size(), bound_mib, memory_limit_mib));
+                                              rest_elements.size(), needed_mib, memory_limit_mib));
 
     std::vector<Row> rows(rest_elements.size());
     core::Progress progress("coefficients", rows.size());
@@ -191,7 +264,6 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
         progress.advance();
     });
 
-    model::Coefficients result;
     result.layout = unknown_layout(rest_elements);
     result.degree = plan.degree;
     std::size_t values = 0;

@@ -22,16 +22,33 @@ kernel::TransportOptions transport_options_for(const model::Scene& scene, const 
 /// How the unknowns of all elements follow each other. @param elements  in order of ElementId
 model::UnknownLayout unknown_layout(std::span<const geometry::ElementShape> elements);
 
+/// Whether distant groups of elements exchange light as one.
+enum class Grouping : std::uint8_t {
+    Auto,  ///< above GroupingOptions::most_elements, and where the blocks of all pairs would not fit
+    Never, ///< every pair of elements has its own block
+    Always,
+};
+
+struct GroupingOptions {
+    Grouping use = Grouping::Auto;
+    std::size_t most_elements =
+        8000; ///< up to so many every pair is stored: below about 1 GiB, at one unknown each
+    double share =
+        0.5; ///< of the scene's accuracy that links may take, the rest is the blocks' and the basis' [1]
+};
+
 /// The blocks of all pairs at rest relative to each other, with the occlusion by bodies that never move; and the lists
 /// of pairs that change: bodies in relative motion, and pairs at rest that a moving body may come between (judged by
-/// the pair's bounding spheres and the mover's bounds over all frames). Rows are computed in parallel; the result does
+/// the pair's bounding spheres and the mover's bounds over all frames). In large scenes links between groups take the
+/// place of the blocks of distant pairs at rest that no moving body can come between (docs/hierarchy.md). Rows are computed in parallel; the result does
 /// not depend on threads.
 /// @param rest_elements  at rest, in order of ElementId
 /// @throws ResourceError  the blocks would need more than memory_limit_mib
 model::Coefficients compute_coefficients(std::span<const geometry::ElementShape> rest_elements,
                                          const model::Scene& scene, const model::Plan& plan,
                                          const visibility::Occluders& occluders,
-                                         const kernel::TransportOptions& options, double memory_limit_mib);
+                                         const kernel::TransportOptions& options, double memory_limit_mib,
+                                         const GroupingOptions& grouping = {});
 
 /// Form factors between groups of elements (objects, or patches): F_ab is the share of what leaves a uniformly that
 /// reaches b; rows of a closed scene sum to 1.

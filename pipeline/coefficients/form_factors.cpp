@@ -1,9 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "coefficients/coefficients.h"
+#include "model/hierarchy.h"
 
 namespace kinelux::coefficients {
+
+namespace {
+
+constexpr std::size_t groups_at_once = 16; ///< of links' form factors: one channel each
+
+// Adds what the links carry between groups of elements, A_a F_ab: a few groups at a time shine with radiosity 1.
+void add_links(const model::Coefficients& coefficients, std::span<const geometry::ElementShape> elements,
+               std::span<const std::uint32_t> group_of, std::uint32_t groups, std::vector<double>& exchange) {
+    const auto& offsets = coefficients.layout.offsets;
+    for (std::uint32_t first = 0; first < groups; first += groups_at_once) {
+        const std::size_t channels = std::min<std::size_t>(groups_at_once, groups - first);
+        std::vector<double> sent(coefficients.layout.unknowns() * channels, 0.0), arrived(sent.size(), 0.0);
+        for (std::size_t e = 0; e < elements.size(); ++e)
+            if (group_of[e] >= first && group_of[e] < first + channels)
+                sent[offsets[e] * channels + group_of[e] - first] = std::sqrt(elements[e].area);
+        model::add_link_transport(coefficients.hierarchy, channels, sent, arrived);
+        for (std::size_t e = 0; e < elements.size(); ++e)
+            for (std::size_t c = 0; c < channels; ++c)
+                exchange[(first + c) * groups + group_of[e]] +=
+                    std::sqrt(elements[e].area) * arrived[offsets[e] * channels + c];
+    }
+}
+
+// Adds the links' error, which is known for all of them together, to each factor in proportion to what it carries.
+void add_link_errors(const model::Hierarchy& hierarchy, std::span<const double> exchange,
+                     std::vector<double>& error) {
+    for (std::size_t k = 0; k < error.size(); ++k) error[k] += hierarchy.error_estimate * exchange[k];
+}
+
+} // namespace
 
 std::vector<FormFactor> form_factors(const model::Coefficients& coefficients,
                                      std::span<const geometry::ElementShape> elements,
@@ -22,6 +54,10 @@ std::vector<FormFactor> form_factors(const model::Coefficients& coefficients,
             exchange[backward] += value;
             error[backward] += scale * static_cast<double>(entry.error);
         }
+    }
+    if (!coefficients.hierarchy.empty()) {
+        add_links(coefficients, elements, group_of, groups, exchange);
+        add_link_errors(coefficients.hierarchy, exchange, error);
     }
     std::vector<FormFactor> result;
     for (std::uint32_t from = 0; from < groups; ++from)

@@ -244,6 +244,60 @@ std::vector<model::ElementPair> get_pairs(const Hdf5Reader& file, const std::str
     return pairs;
 }
 
+void put_blocks(Hdf5Writer& file, const std::string& name, const model::BlockSet& blocks) {
+    using model::BlockEntry;
+    const auto& [entries, values] = blocks;
+    file.dataset(name + "/i", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.i; }));
+    file.dataset(name + "/j", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.j; }));
+    file.dataset(name + "/offset",
+                 column<std::uint64_t>(entries, [](const BlockEntry& b) { return b.offset; }));
+    file.dataset(name + "/error", column<float>(entries, [](const BlockEntry& b) { return b.error; }));
+    file.dataset(name + "/values", values);
+}
+
+model::BlockSet get_blocks(const Hdf5Reader& file, const std::string& name) {
+    model::BlockSet blocks;
+    const auto i = file.dataset<std::uint32_t>(name + "/i");
+    const Hdf5Shape shape{i.size()};
+    const auto j = file.dataset<std::uint32_t>(name + "/j", shape);
+    const auto offset = file.dataset<std::uint64_t>(name + "/offset", shape);
+    const auto error = file.dataset<float>(name + "/error", shape);
+    blocks.entries.resize(i.size());
+    for (std::size_t k = 0; k < i.size(); ++k) blocks.entries[k] = {i[k], j[k], offset[k], error[k]};
+    blocks.values = file.dataset<float>(name + "/values");
+    return blocks;
+}
+
+void put_hierarchy(Hdf5Writer& file, const model::Hierarchy& hierarchy) {
+    using model::ElementGroup;
+    const auto& groups = hierarchy.groups;
+    file.attribute("links_error_estimate", hierarchy.error_estimate);
+    file.dataset("hierarchy/layout_offsets", hierarchy.layout.offsets);
+    file.dataset("hierarchy/first",
+                 column<std::uint32_t>(groups, [](const ElementGroup& g) { return g.first; }));
+    file.dataset("hierarchy/second",
+                 column<std::uint32_t>(groups, [](const ElementGroup& g) { return g.second; }));
+    file.dataset("hierarchy/offset",
+                 column<std::uint64_t>(groups, [](const ElementGroup& g) { return g.offset; }));
+    file.dataset("hierarchy/restrictions", hierarchy.restrictions);
+    put_blocks(file, "links", hierarchy.links);
+}
+
+model::Hierarchy get_hierarchy(const Hdf5Reader& file) {
+    model::Hierarchy hierarchy;
+    hierarchy.error_estimate = file.number("links_error_estimate");
+    hierarchy.layout.offsets = file.dataset<std::uint32_t>("hierarchy/layout_offsets");
+    const auto first = file.dataset<std::uint32_t>("hierarchy/first");
+    const Hdf5Shape shape{first.size()};
+    const auto second = file.dataset<std::uint32_t>("hierarchy/second", shape);
+    const auto offset = file.dataset<std::uint64_t>("hierarchy/offset", shape);
+    for (std::size_t g = 0; g < first.size(); ++g)
+        hierarchy.groups.push_back({first[g], second[g], offset[g]});
+    hierarchy.restrictions = file.dataset<double>("hierarchy/restrictions");
+    hierarchy.links = get_blocks(file, "links");
+    return hierarchy;
+}
+
 // ---- solution
 
 using model::FrameSolution;
@@ -390,18 +444,12 @@ model::ClusterTree get_clusters(const Hdf5Reader& file) {
 }
 
 void put_coefficients(Hdf5Writer& file, const model::Coefficients& coefficients) {
-    using model::BlockEntry;
     file.attribute("degree", std::int64_t{coefficients.degree});
     file.attribute("pairs_examined", coefficients.pairs_examined);
     file.attribute("rays_cast", coefficients.rays_cast);
     file.dataset("layout/offsets", coefficients.layout.offsets);
-    const auto& [entries, values] = coefficients.static_blocks;
-    file.dataset("static_blocks/i", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.i; }));
-    file.dataset("static_blocks/j", column<std::uint32_t>(entries, [](const BlockEntry& b) { return b.j; }));
-    file.dataset("static_blocks/offset",
-                 column<std::uint64_t>(entries, [](const BlockEntry& b) { return b.offset; }));
-    file.dataset("static_blocks/error", column<float>(entries, [](const BlockEntry& b) { return b.error; }));
-    file.dataset("static_blocks/values", values);
+    put_blocks(file, "static_blocks", coefficients.static_blocks);
+    put_hierarchy(file, coefficients.hierarchy);
     put_pairs(file, "moving_pairs", coefficients.moving_pairs);
     put_pairs(file, "crossed_pairs", coefficients.crossed_pairs);
 }
@@ -412,15 +460,8 @@ model::Coefficients get_coefficients(const Hdf5Reader& file) {
     coefficients.pairs_examined = file.number("pairs_examined");
     coefficients.rays_cast = file.number("rays_cast");
     coefficients.layout.offsets = file.dataset<std::uint32_t>("layout/offsets");
-    const auto i = file.dataset<std::uint32_t>("static_blocks/i");
-    const Hdf5Shape shape{i.size()};
-    const auto j = file.dataset<std::uint32_t>("static_blocks/j", shape);
-    const auto offset = file.dataset<std::uint64_t>("static_blocks/offset", shape);
-    const auto error = file.dataset<float>("static_blocks/error", shape);
-    auto& entries = coefficients.static_blocks.entries;
-    entries.resize(i.size());
-    for (std::size_t k = 0; k < i.size(); ++k) entries[k] = {i[k], j[k], offset[k], error[k]};
-    coefficients.static_blocks.values = file.dataset<float>("static_blocks/values");
+    coefficients.static_blocks = get_blocks(file, "static_blocks");
+    coefficients.hierarchy = get_hierarchy(file);
     coefficients.moving_pairs = get_pairs(file, "moving_pairs");
     coefficients.crossed_pairs = get_pairs(file, "crossed_pairs");
     return coefficients;

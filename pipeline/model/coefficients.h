@@ -34,6 +34,29 @@ struct BlockSet {
     std::vector<float> values;
 };
 
+/// A group of elements that exchange light with distant groups as one: a node of the hierarchy with two children.
+struct ElementGroup {
+    std::uint32_t first = 0, second = 0; ///< child nodes; each smaller than the group's own node
+    std::uint64_t offset =
+        0; ///< of its restrictions from the first child, then from the second: count(group) x
+           ///< count(child) row-major values each
+};
+
+/// Binary trees over elements, and the transport between their nodes. Node n < elements is element n with its own
+/// unknowns; node elements + g is group g, with a small orthonormal basis of its own. A group's coefficients are
+///   x_group = P_first x_first + P_second x_second,     P_kl = integral over the child of psi_k(group) psi_l(child) dA,
+/// and the light that a link brings to a group reaches its children by the transposes. Links and element blocks
+/// together are G; no pair of elements is in both.
+struct Hierarchy {
+    UnknownLayout layout; ///< of all nodes; empty: there is no hierarchy, all pairs are element blocks
+    std::vector<ElementGroup> groups;
+    std::vector<double> restrictions;
+    BlockSet links;              ///< between nodes
+    double error_estimate = 0.0; ///< relative L2 error of irradiance that the links are expected to add [1]
+
+    bool empty() const { return layout.offsets.empty(); }
+};
+
 /// An index pair i <= j of elements.
 struct ElementPair {
     std::uint32_t i = 0, j = 0;
@@ -45,6 +68,7 @@ struct Coefficients {
     UnknownLayout layout;
     int degree = 0;
     BlockSet static_blocks;
+    Hierarchy hierarchy; ///< transport between groups at rest that no moving body can come between
     std::vector<ElementPair> moving_pairs; ///< bodies move relative to each other; recomputed in every frame
     std::vector<ElementPair>
         crossed_pairs;         ///< at rest, but a moving body may enter between them in some frame
@@ -52,7 +76,7 @@ struct Coefficients {
     double rays_cast = 0;      ///< for static blocks [1]
 };
 
-/// @throws GeometryError  unsorted or out-of-range entries, value offsets beyond the end, not-a-number values
+/// @throws GeometryError  unsorted or out-of-range entries, groups that are no trees, value offsets beyond the end, not-a-number values
 void check(const Coefficients& coefficients);
 
 } // namespace kinelux::model

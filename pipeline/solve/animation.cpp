@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "model/hierarchy.h"
+
 namespace kinelux::solve {
 
 namespace {
@@ -160,12 +162,38 @@ double discretisation_error(std::span<const double> irradiance, std::size_t func
     return square_sum(irradiance.subspan(lower * channels));
 }
 
+/// Adds the squared errors of links, each spread over the elements of its two nodes by their area.
+void add_link_errors(const model::Hierarchy& hierarchy, std::span<const double> areas,
+                     std::span<const double> radiosity, std::size_t channels, std::vector<double>& error) {
+    if (hierarchy.empty()) return;
+    const auto& layout = hierarchy.layout;
+    const std::vector<double> sent = model::gather_groups(hierarchy, channels, radiosity);
+    const auto size = [&](std::size_t node) {
+        return square_sum(
+            std::span(sent).subspan(layout.offsets[node] * channels, layout.count(node) * channels));
+    };
+    std::vector<double> at_node(layout.elements(), 0.0), area(areas.begin(), areas.end());
+    for (const model::BlockEntry& link : hierarchy.links.entries) {
+        const double square = static_cast<double>(link.error) * static_cast<double>(link.error);
+        at_node[link.i] += square * size(link.j);
+        at_node[link.j] += square * size(link.i);
+    }
+    for (const model::ElementGroup& group : hierarchy.groups)
+        area.push_back(area[group.first] + area[group.second]);
+    for (std::size_t node = area.size(); node-- > areas.size();) {
+        const model::ElementGroup& group = hierarchy.groups[node - areas.size()];
+        for (const std::uint32_t child : {group.first, group.second})
+            at_node[child] += at_node[node] * area[child] / area[node];
+    }
+    for (std::size_t e = 0; e < error.size(); ++e) error[e] += at_node[e];
+}
+
 } // namespace
 
 std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
                                      std::span<const model::BlockEntry> blocks, std::span<const double> areas,
                                      std::span<const double> exitance, const FrameSolution& frame,
-                                     std::size_t channels) {
+                                     std::size_t channels, const model::Hierarchy& hierarchy) {
     // ||B_j||^2 per element; the norms of coefficients are those of the functions, the bases being orthonormal.
     std::vector<double> size(layout.elements()), error(layout.elements());
     double total_area = 0.0;
@@ -179,6 +207,7 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
         error[entry.i] += square * size[entry.j];
         if (entry.i != entry.j) error[entry.j] += square * size[entry.i];
     }
+    add_link_errors(hierarchy, areas, frame.radiosity, channels, error);
     // What the solver left is spread evenly: ||r||^2 = (residual ||M||)^2.
     const double residual = frame.residual * frame.residual * square_sum(exitance) / total_area;
     std::vector<float> result(layout.elements());
@@ -200,7 +229,10 @@ model::Solution solve_animation(const Animation& animation, motion::FrameUpdater
     const Light light = light_of(animation);
     TemporalSolver solver(light.channels, light.exitance, light.reflectance,
                           {animation.areas.begin(), animation.areas.end()}, options);
-    BlockOperator transport(coefficients.layout, coefficients.static_blocks);
+    BlockOperator blocks(coefficients.layout, coefficients.static_blocks);
+    const LinkedOperator linked(blocks, coefficients.hierarchy);
+    const TransportOperator& transport =
+        coefficients.hierarchy.empty() ? static_cast<const TransportOperator&>(blocks) : linked;
     model::Solution solution{.layout = coefficients.layout,
                              .channels = static_cast<std::uint32_t>(animation.scene.channels.size()),
                              .frames = {}};
@@ -219,7 +251,7 @@ model::Solution solve_animation(const Animation& animation, motion::FrameUpdater
             continue;
         }
         const motion::FrameBlocks changed = updater.at(time_s);
-        transport.replace(changed.pairs, changed.blocks);
+        blocks.replace(changed.pairs, changed.blocks);
 
         FrameSolution frame =
             animation.plan.bounces == 0 ? direct_only(transport, light) : solver.solve_frame(transport);
@@ -228,7 +260,7 @@ model::Solution solve_animation(const Animation& animation, motion::FrameUpdater
         frame.blocks_recomputed = static_cast<std::uint32_t>(changed.pairs.size());
         frame.element_error =
             irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
-                              animation.areas, light.exitance, frame, light.channels);
+                              animation.areas, light.exitance, frame, light.channels, coefficients.hierarchy);
         frame.error_estimate = radiosity_error(coefficients.layout, light, animation.areas, frame);
         spread_channels(light, frame);
         frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

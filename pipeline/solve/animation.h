@@ -40,12 +40,13 @@ model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::Fr
 
 /// RMS error of irradiance on each element that is to be expected: sqrt((sum_j (error_ij ||B_j||)^2 + basis_i) / A_i + r^2),
 /// of the blocks (errors independent of each other), of the basis (what its highest degree holds of the indirect
-/// irradiance) and of the solver's residual. An estimate, not a bound.
+/// irradiance) and of the solver's residual. Errors of links are spread over the elements of their groups. An estimate,
+/// not a bound.
 /// @param frame  with radiosity, indirect irradiance and residual
 /// @return  one per element, the RMS over channels [W/m2 or lx]
 std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
                                      std::span<const model::BlockEntry> blocks, std::span<const double> areas,
                                      std::span<const double> exitance, const model::FrameSolution& frame,
-                                     std::size_t channels);
+                                     std::size_t channels, const model::Hierarchy& hierarchy = {});
 
 } // namespace kinelux::solve

@@ -36,9 +36,13 @@ void add_block(const float* values, bool transposed, std::size_t rows, std::size
 
 void apply(const TransportOperator& transport, std::size_t channels, std::span<const double> x,
            std::span<double> y) {
-    const auto& layout = transport.layout();
-    core::parallel_for(layout.elements(), [&](std::size_t i) {
-        transport.gather(i, channels, x, y.subspan(layout.offsets[i] * channels, layout.count(i) * channels));
+    transport.apply(channels, x, y);
+}
+
+void RowOperator::apply(std::size_t channels, std::span<const double> x, std::span<double> y) const {
+    const auto& rows = layout();
+    core::parallel_for(rows.elements(), [&](std::size_t i) {
+        gather(i, channels, x, y.subspan(rows.offsets[i] * channels, rows.count(i) * channels));
     });
 }
 

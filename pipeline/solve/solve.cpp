@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
+#include "solve/conjugate_gradients.h"
+
 namespace kinelux::solve {
 
 namespace {
@@ -40,7 +43,7 @@ std::vector<double> residual_of(const System& system, std::span<const double> ra
 }
 
 // One Gauss-Seidel sweep in place; the norm of the change.
-double sweep(const System& system, std::vector<double>& radiosity) {
+double sweep(const System& system, const RowOperator& rows, std::vector<double>& radiosity) {
     const auto& layout = system.transport.layout();
     const std::size_t channels = system.channels;
     std::vector<double> gathered;
@@ -48,7 +51,7 @@ double sweep(const System& system, std::vector<double>& radiosity) {
     for (std::size_t i = 0; i < layout.elements(); ++i) {
         const std::size_t first = layout.offsets[i] * channels;
         gathered.resize(layout.count(i) * channels);
-        system.transport.gather(i, channels, radiosity, gathered);
+        rows.gather(i, channels, radiosity, gathered);
         for (std::size_t k = 0; k < gathered.size(); ++k) {
             const double rho = system.reflectance[i * channels + k % channels];
             const double value = system.exitance[first + k] + rho * gathered[k];
@@ -59,7 +62,8 @@ double sweep(const System& system, std::vector<double>& radiosity) {
     return std::sqrt(change);
 }
 
-void gauss_seidel(const System& system, const SolveOptions& options, double scale, SystemSolution& solution) {
+void gauss_seidel(const System& system, const RowOperator& rows, const SolveOptions& options, double scale,
+                  SystemSolution& solution) {
     // The change of a sweep is about the residual before it; the exact residual is computed once it looks small.
     while (true) {
         apply(system.transport, system.channels, solution.radiosity, solution.irradiance);
@@ -67,14 +71,15 @@ void gauss_seidel(const System& system, const SolveOptions& options, double scal
         if (residual <= options.tolerance * scale || solution.sweeps >= options.max_sweeps) return;
         double change = residual;
         while (change > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
-            change = sweep(system, solution.radiosity);
+            change = sweep(system, rows, solution.radiosity);
             ++solution.sweeps;
         }
     }
 }
 
 // Progressive refinement: the element with the most unshot flux shoots it all, again and again.
-void shoot(const System& system, const SolveOptions& options, double scale, SystemSolution& solution) {
+void shoot(const System& system, const RowOperator& rows, const SolveOptions& options, double scale,
+           SystemSolution& solution) {
     const auto& layout = system.transport.layout();
     const std::size_t channels = system.channels;
     std::vector<double> unshot(system.exitance.begin(), system.exitance.end());
@@ -96,8 +101,7 @@ void shoot(const System& system, const SolveOptions& options, double scale, Syst
         const std::size_t first = layout.offsets[shooter] * channels,
                           count = layout.count(shooter) * channels;
         std::fill(arriving.begin(), arriving.end(), 0.0);
-        system.transport.scatter(shooter, channels, std::span<const double>(unshot).subspan(first, count),
-                                 arriving);
+        rows.scatter(shooter, channels, std::span<const double>(unshot).subspan(first, count), arriving);
         for (std::size_t k = first; k < first + count; ++k) {
             solution.radiosity[k] += unshot[k];
             unshot[k] = 0.0;
@@ -122,12 +126,20 @@ SystemSolution solve_system(const System& system, const SolveOptions& options,
     solution.radiosity.assign(system.exitance.size(), 0.0);
     solution.irradiance.assign(system.exitance.size(), 0.0);
     if (!(scale > 0.0)) return solution;
+    const RowOperator* rows = system.transport.rows();
     if (options.method == Method::Shooting) {
-        shoot(system, options, scale, solution);
+        if (rows == nullptr)
+            throw core::OptionError(
+                "shooting needs the blocks of all pairs of elements, but distant groups are "
+                "linked; compute the coefficients with --groups never, or use another method");
+        shoot(system, *rows, options, scale, solution);
     } else {
         const auto& from = start.empty() ? system.exitance : start;
         solution.radiosity.assign(from.begin(), from.end());
-        gauss_seidel(system, options, scale, solution);
+        if (options.method == Method::GaussSeidel && rows != nullptr)
+            gauss_seidel(system, *rows, options, scale, solution);
+        else
+            conjugate_gradients(system, options, scale, solution);
     }
     const std::vector<double> residual = residual_of(system, solution.radiosity, solution.irradiance);
     solution.residual = norm(residual) / scale;

@@ -13,7 +13,8 @@ namespace kinelux::solve {
 
 enum class Method : std::uint8_t {
     Shooting, ///< progressive refinement from zero: the element with the most unshot flux shoots; the paper's baseline
-    GaussSeidel, ///< sweeps from the extrapolated previous frames
+    GaussSeidel, ///< sweeps from the extrapolated previous frames; conjugate gradients where G has no rows
+    ConjugateGradients, ///< on the symmetric system, from the extrapolated previous frames
 };
 
 struct SolveOptions {
@@ -41,6 +42,7 @@ struct SystemSolution {
 };
 
 /// Solves the system from a start vector (empty: from the exitance). Without emitters the solution is zero.
+/// @throws OptionError  shooting where the transport has no rows
 SystemSolution solve_system(const System& system, const SolveOptions& options, std::span<const double> start);
 
 /// The coefficient vectors of a scene's materials: exitance (constant over each element) and reflectance.

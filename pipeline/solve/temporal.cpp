@@ -28,15 +28,20 @@ std::vector<double> TemporalSolver::extrapolated() const {
     return start;
 }
 
-// G M, element by element that emits: they are few.
+// G M, element by element that emits where that can be done: they are few.
 std::vector<double> TemporalSolver::emitted_irradiance(const TransportOperator& transport) const {
     const auto& layout = transport.layout();
     std::vector<double> irradiance(exitance_.size());
+    const RowOperator* rows = transport.rows();
+    if (rows == nullptr) {
+        transport.apply(channels_, exitance_, irradiance);
+        return irradiance;
+    }
     for (std::size_t i = 0; i < layout.elements(); ++i) {
         const auto own =
             std::span(exitance_).subspan(layout.offsets[i] * channels_, layout.count(i) * channels_);
         if (std::any_of(own.begin(), own.end(), [](double value) { return value != 0.0; }))
-            transport.scatter(i, channels_, own, irradiance);
+            rows->scatter(i, channels_, own, irradiance);
     }
     return irradiance;
 }

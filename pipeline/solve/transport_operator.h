@@ -10,25 +10,38 @@
 
 namespace kinelux::solve {
 
+class RowOperator;
+
 /// The symmetric transport G as the solvers see it. Vectors are unknowns x channels, channel fastest.
 class TransportOperator {
 public:
     virtual ~TransportOperator() = default;
     virtual const model::UnknownLayout& layout() const = 0;
+    /// y = G x, the same bytes at any thread count. @param y  overwritten
+    virtual void apply(std::size_t channels, std::span<const double> x, std::span<double> y) const = 0;
+    /// The operator by rows, where rows of single elements can be had; else nothing.
+    virtual const RowOperator* rows() const { return nullptr; }
+};
+
+/// A transport whose rows can be used one by one.
+class RowOperator : public TransportOperator {
+public:
     /// out = sum_j G_ij x_j. @param x  all unknowns; @param out  count(i) x channels, overwritten
     virtual void gather(std::size_t element, std::size_t channels, std::span<const double> x,
                         std::span<double> out) const = 0;
     /// y_j += G_ji x_i for all j. @param x_i  count(i) x channels; @param y  all unknowns
     virtual void scatter(std::size_t element, std::size_t channels, std::span<const double> x_i,
                          std::span<double> y) const = 0;
+    void apply(std::size_t channels, std::span<const double> x, std::span<double> y) const override;
+    const RowOperator* rows() const override { return this; }
 };
 
-/// y = G x, rows in parallel, the same bytes at any thread count.
+/// y = G x.
 void apply(const TransportOperator& transport, std::size_t channels, std::span<const double> x,
            std::span<double> y);
 
 /// Stored blocks: a static set, some of whose pairs another set replaces for now.
-class BlockOperator : public TransportOperator {
+class BlockOperator : public RowOperator {
 public:
     /// The arguments must outlive the operator.
     BlockOperator(const model::UnknownLayout& layout, const model::BlockSet& static_blocks);
@@ -56,6 +69,22 @@ private:
     const model::UnknownLayout& layout_;
     Rows static_rows_, replacing_rows_; ///< per element, neighbours in increasing order
     std::vector<model::ElementPair> replaced_;
+};
+
+/// Blocks of elements and links between groups together. Has no rows: what one element receives from groups changes with
+/// every element below them.
+class LinkedOperator : public TransportOperator {
+public:
+    /// The arguments must outlive the operator. @param blocks  of the elements
+    LinkedOperator(const BlockOperator& blocks, const model::Hierarchy& hierarchy);
+
+    const model::UnknownLayout& layout() const override { return blocks_.layout(); }
+    void apply(std::size_t channels, std::span<const double> x, std::span<double> y) const override;
+
+private:
+    const BlockOperator& blocks_;
+    const model::Hierarchy& hierarchy_;
+    BlockOperator links_; ///< between all nodes
 };
 
 } // namespace kinelux::solve

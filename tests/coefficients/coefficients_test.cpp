@@ -39,6 +39,39 @@ TEST(Coefficients, more_blocks_than_memory_allows_are_refused_before_work_starts
     EXPECT_THROW(compute_coefficients(shapes, scene, {.degree = 2}, occluders, {}, 0.1), core::ResourceError);
 }
 
+TEST(Coefficients, groups_are_linked_from_a_number_of_elements_on_that_can_be_chosen) {
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(1), support::Facing::Inwards);
+    const auto scene = support::plain_scene(1);
+    const auto shapes = support::shapes_of(set, 4, 0);
+    const auto occluders = support::occluders_of(set, scene);
+    const auto links = [&](const GroupingOptions& grouping) {
+        return compute_coefficients(shapes, scene, {.degree = 0}, occluders, {}, 1e6, grouping)
+            .hierarchy.links;
+    };
+    EXPECT_TRUE(links({.most_elements = shapes.size()}).entries.empty());
+    EXPECT_FALSE(links({.most_elements = shapes.size() - 1}).entries.empty());
+    EXPECT_TRUE(links({.use = Grouping::Never, .most_elements = 1}).entries.empty());
+}
+
+TEST(FormFactors, rows_of_objects_sum_to_one_through_links) {
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(2, 3, 1), support::Facing::Inwards);
+    for (std::size_t p = 3; p < 6; ++p) set.patches[p].object = ObjectId(1);
+    const auto scene = support::plain_scene(2);
+    const auto shapes = support::shapes_of(set, 6, 0);
+    const auto occluders = support::occluders_of(set, scene);
+    const auto coefficients =
+        compute_coefficients(shapes, scene, {.degree = 0}, occluders, {}, 1e6, {.use = Grouping::Always});
+    ASSERT_FALSE(coefficients.hierarchy.links.entries.empty());
+    std::vector<std::uint32_t> groups;
+    groups.reserve(shapes.size());
+    for (const auto& shape : shapes) groups.push_back(shape.object.value);
+    const auto factors = form_factors(coefficients, shapes, groups, 2);
+    EXPECT_NEAR(factors[0].value + factors[1].value, 1.0, 0.02);
+    EXPECT_NEAR(factors[2].value + factors[3].value, 1.0, 0.02);
+}
+
 TEST(Coefficients, are_the_same_bytes_on_one_thread_and_two) {
     model::PatchSet set;
     set.patches = support::box(Vec3(0), Vec3(1), support::Facing::Inwards);

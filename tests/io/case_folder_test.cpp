@@ -236,6 +236,17 @@ TEST_F(CaseFolderTest, coefficients_come_back_exactly) {
         EXPECT_EQ(a.error, b.error);
     }
     EXPECT_TRUE(same_bits(read.static_blocks.values, wanted.static_blocks.values));
+    const model::Hierarchy &links = read.hierarchy, &wanted_links = wanted.hierarchy;
+    EXPECT_EQ(links.layout.offsets, wanted_links.layout.offsets);
+    ASSERT_EQ(links.groups.size(), 1u);
+    EXPECT_EQ(links.groups[0].first, wanted_links.groups[0].first);
+    EXPECT_EQ(links.groups[0].second, wanted_links.groups[0].second);
+    EXPECT_EQ(links.groups[0].offset, wanted_links.groups[0].offset);
+    EXPECT_TRUE(same_bits(links.restrictions, wanted_links.restrictions));
+    ASSERT_EQ(links.links.entries.size(), 1u);
+    EXPECT_EQ(links.links.entries[0].j, 3u);
+    EXPECT_TRUE(same_bits(links.links.values, wanted_links.links.values));
+    EXPECT_EQ(links.error_estimate, wanted_links.error_estimate);
     EXPECT_EQ(read.moving_pairs, wanted.moving_pairs);
     EXPECT_EQ(read.crossed_pairs, wanted.crossed_pairs);
     EXPECT_EQ(read.pairs_examined, wanted.pairs_examined);
@@ -367,6 +378,10 @@ TEST_F(CaseFolderTest, inconsistent_content_is_refused) {
     broken.static_blocks.entries[1].offset = 1000;
     folder.write_coefficients(broken);
     EXPECT_NE(error_of("coefficients.h5").find("ends beyond"), std::string::npos);
+    broken = support::example_coefficients();
+    broken.hierarchy.groups[0].second = 3;
+    folder.write_coefficients(broken);
+    EXPECT_NE(error_of("coefficients.h5").find("cannot be a child"), std::string::npos);
 }
 
 TEST_F(CaseFolderTest, objects_get_distinct_file_names_and_old_ones_go) {

@@ -136,6 +136,12 @@ inline model::Coefficients example_coefficients() {
     coefficients.degree = 1;
     coefficients.static_blocks.entries = {{0, 1, 0, 1e-3f}, {0, 2, 3, 0.1f}, {1, 2, 6, 0.0f}};
     coefficients.static_blocks.values = {0.1f, -0.2f, 0.3f, 1e-30f, 0.5f, 0.6f, 0.7f};
+    coefficients.hierarchy.layout.offsets = {0, 3, 4, 5, 7};
+    coefficients.hierarchy.groups = {{1, 2, 0}};
+    coefficients.hierarchy.restrictions = {0.6, 0.8, 1e-300, -0.5};
+    coefficients.hierarchy.links.entries = {{0, 3, 0, 0.25f}};
+    coefficients.hierarchy.links.values = {0.1f, -1e-30f, 0.3f, 0.4f, 0.5f, 0.6f};
+    coefficients.hierarchy.error_estimate = 0.004;
     coefficients.moving_pairs = {{0, 1}, {0, 2}};
     coefficients.crossed_pairs = {{1, 2}};
     coefficients.pairs_examined = 3.0;

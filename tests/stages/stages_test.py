@@ -285,6 +285,21 @@ class MovingScene(StageTest):
                          ["frame_0001.vtu", "frame_0002.vtu"])
         self.assert_fails(2, r"--frames 7,9: the scene has frames 0 to 2", "kinelux-solve", "case", "--frames", "7,9")
 
+    def test_linked_groups_give_every_frame_too(self):
+        scene = scenes.write_room(self.folder, moving=True, target="5%")
+        self.run_ok("kinelux", "run", scene, "-o", "case", "--element-size", "0.2")
+        case = self.folder / "case"
+        expected = json.loads((case / "solve.json").read_text(encoding="utf-8"))["frames"]
+        self.run_ok("kinelux-coefficients", "case", "--groups", "always")
+        counts = json.loads((case / "coefficients.json").read_text(encoding="utf-8"))["counts"]
+        self.assertGreater(counts["links"], 0)
+        self.run_ok("kinelux-solve", "case")
+        self.run_ok("kinelux-export", "case")
+        found = json.loads((case / "solve.json").read_text(encoding="utf-8"))["frames"]
+        self.assertEqual([f["blocks_recomputed"] for f in found], [f["blocks_recomputed"] for f in expected])
+        self.assertTrue(all(f["converged"] for f in found))
+        self.assert_fails(2, r"shooting needs the blocks of all pairs", "kinelux-solve", "case", "--method", "shooting")
+
     def test_energy_that_arrives_is_energy_that_leaves(self):
         scene = scenes.write_room(self.folder, moving=True, target="5%")
         self.run_ok("kinelux", "run", scene, "-o", "case")
