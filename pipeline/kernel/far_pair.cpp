@@ -36,7 +36,7 @@ double kernel_value(const SurfaceNode& x, const SurfaceNode& y) {
 
 std::optional<FarRule> far_rule(const ElementShape& a, const ElementShape& b, double tolerance) {
     // Measured as the largest of (error / size without cosines) / ratio^(degrees) over random pairs, rounded up.
-    constexpr double amplitude = 1.0;
+    const double amplitude = 1.0 + std::max(a.basis.degree(), b.basis.degree());
     constexpr double nearest_ratio = 0.6;
     const Vec3 axis = b.centre - a.centre;
     const double distance = glm::length(axis);

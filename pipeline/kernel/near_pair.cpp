@@ -163,25 +163,51 @@ public:
         std::vector<Cell> first;
         for (const OuterPiece& piece : pieces) append_cells(piece, first);
         for (const Cell& cell : first) total_area_ += area_of(cell);
-        cells_ = options_.polygon != nullptr ? planned(std::move(first)) : std::move(first);
-        for (Cell& cell : cells_) {
-            if (options_.refine) ask_for_measuring(cell);
-            evaluate(cell);
+        // Where the integrand gathers in small cells those must be the better: planned again, for what they hold.
+        constexpr int most_plans = 3;
+        plan_tolerance_ = options_.tolerance;
+        for (int plan = 0; plan < most_plans; ++plan) {
+            cells_ = options_.polygon != nullptr ? planned(first) : first;
+            for (Cell& cell : cells_) {
+                if (options_.refine) ask_for_measuring(cell);
+                evaluate(cell);
+            }
+            constexpr double usual = 10.0; // at hinges; the plan allows for it
+            const double gathering = options_.refine ? 0.0 : concentration();
+            if (gathering < usual) break;
+            plan_tolerance_ *= 0.5 * usual / gathering;
         }
         if (options_.refine) refine();
 
         OuterResult result;
-        result.values.assign(size_, 0.0);
-        for (const Cell& cell : cells_) {
-            for (std::size_t k = 0; k < size_; ++k) result.values[k] += cell.values[k];
-            result.error += cell.error();
-        }
-        if (!options_.refine) result.error = options_.tolerance * std::sqrt(norm2(result.values));
+        result.values = sum_of_cells();
+        for (const Cell& cell : cells_) result.error += cell.error();
+        if (!options_.refine)
+            result.error = options_.tolerance * std::max(std::sqrt(norm2(result.values)), options_.floor);
         result.points = points_;
         return result;
     }
 
 private:
+    std::vector<double> sum_of_cells() const {
+        std::vector<double> sum(size_, 0.0);
+        for (const Cell& cell : cells_)
+            for (std::size_t k = 0; k < size_; ++k) sum[k] += cell.values[k];
+        return sum;
+    }
+
+    // The foretold errors weighted by what cells hold, relative to the same weighted by their areas.
+    double concentration() const {
+        const double total = std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
+        double held = 0.0, by_area = 0.0;
+        for (const Cell& cell : cells_) {
+            const double foretold = cell.s.foretold + cell.t.foretold;
+            held += foretold * std::sqrt(norm2(cell.values));
+            by_area += foretold * area_of(cell) / total_area_;
+        }
+        return total > 0.0 && by_area > 0.0 ? held / (total * by_area) : 1.0;
+    }
+
     static bool smaller_error(const Cell& a, const Cell& b) { return a.error() < b.error(); }
 
     static void append_cells(const OuterPiece& piece, std::vector<Cell>& cells) {
@@ -255,10 +281,12 @@ private:
 
     bool choose(const Singularity& nearest, double share, double length, Direction& direction) const {
         // What errors add up to stays behind the sum of their bounds, the more so the coarser the tolerance.
-        const double wanted = 10.0 * options_.tolerance * std::pow(100.0 * options_.tolerance, 0.15) / share;
+        const double wanted = 4.0 * plan_tolerance_ * std::pow(100.0 * plan_tolerance_, 0.15) / share;
         const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
         const double log_rate = std::log(nearest.rate);
         constexpr int most = 8, fewest = 2;
+        const double amplitude =
+            2.0 * (2.0 + element_.basis.degree()); // on the ellipse through the singularity
         const double degree = std::log(amplitude / wanted) / std::max(log_rate, 1e-9);
         const double nodes = std::ceil(0.5 * (degree + extra));
         direction.nodes = static_cast<int>(std::clamp(nodes, double{fewest}, double{most}));
@@ -267,7 +295,9 @@ private:
         if (nodes <= most) return true;
         // A singularity that the cell all but touches is weak: the integrand only bends there, over the cell's length.
         const double size = 2.0 * element_.radius;
-        if (nearest.distance < 1e-3 * options_.tolerance * size) {
+        constexpr double border = 1e-6;
+        if (nearest.distance < 1e-3 * options_.tolerance * size &&
+            (nearest.place < border || nearest.place > 1.0 - border)) {
             constexpr double bend = 0.1;
             direction.foretold = std::min(direction.foretold, bend * length / size);
         }
@@ -386,14 +416,12 @@ private:
     }
 
     static constexpr std::size_t most_planned = 4000;
-    static constexpr double amplitude =
-        4.0; ///< of an integrand on the ellipse through its nearest singularity
 
     const ElementShape& element_;
     std::size_t columns_, size_;
     PointGather& inner_;
     OuterOptions options_;
-    double total_area_ = 0.0;
+    double total_area_ = 0.0, plan_tolerance_ = 0.0;
     std::vector<double> gathered_, phi_, entries_, along_s_, along_t_, coefficients_;
     std::vector<Cell> cells_;
     std::size_t points_ = 0;

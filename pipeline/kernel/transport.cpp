@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "kernel/far_pair.h"
@@ -35,8 +36,14 @@ HalfSpace front_of(const ElementShape& planar) {
     return {facet.normal, glm::dot(facet.normal, facet.corners[0])};
 }
 
-// What reaches less than this far over a horizon, relative to the pair's size, counts as below it.
-constexpr double horizon_slack = 1e-12;
+// What reaches less far than this over a horizon counts as below it: planes of one wall are equal but for rounding.
+double horizon_slack(const ElementShape& a, const ElementShape& b) {
+    constexpr double share = 1e-10; // of the smaller element: gaps of 1e-9 still count
+    constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
+    const Vec3 reach = glm::max(glm::max(glm::abs(a.box_low), glm::abs(a.box_high)),
+                                glm::max(glm::abs(b.box_low), glm::abs(b.box_high)));
+    return share * std::min(a.radius, b.radius) + roundings * std::max({reach.x, reach.y, reach.z});
+}
 
 Loops3 cut_to_front(const std::vector<std::vector<Vec3>>& loops, const HalfSpace& front, double slack) {
     Loops3 result;
@@ -52,7 +59,7 @@ Loops3 cut_to_front(const std::vector<std::vector<Vec3>>& loops, const HalfSpace
 // Whether the plane of a planar element cuts the other one.
 bool crosses_horizon(const ElementShape& planar, const ElementShape& other) {
     const HalfSpace front = front_of(planar);
-    const double slack = horizon_slack * (planar.radius + other.radius);
+    const double slack = horizon_slack(planar, other);
     if (front.distance(other.centre) >= other.radius) return false;
     for (const Facet& facet : other.facets)
         for (const Vec3& corner : facet.corners)
@@ -84,6 +91,51 @@ std::vector<OuterPiece> pieces_in_front(const ElementShape& a, const HalfSpace& 
         add(a.outline.front(), a.facets.front());
     else
         for (const Facet& facet : a.facets) add(facet.corners, facet);
+    return pieces;
+}
+
+// Where two elements face each other across a narrow gap the inner integral all but jumps below the inner polygon's
+// edges: cuts pieces along them, so that jumps lie between pieces.
+std::vector<OuterPiece> cut_below_edges(std::vector<OuterPiece> pieces, const Loops3& loops,
+                                        const HalfSpace& front, double size) {
+    constexpr double narrow = 0.1;         // of the outer element's size
+    constexpr std::size_t most_edges = 64; // of the inner polygon; more are left to the planning of cells
+    const auto corner = [](const Facet& f, const Vec2& at) {
+        return f.corners[0] + at.x * (f.corners[1] - f.corners[0]) + at.y * (f.corners[2] - f.corners[0]);
+    };
+    if (loops.points.size() > most_edges) return pieces;
+    visibility::LoopCutter<Vec2> cutter;
+    for (std::size_t l = 0; l < loops.size(); ++l)
+        for (std::size_t i = 0, j = loops[l].size() - 1; i < loops[l].size(); j = i++) {
+            const Vec3& from = loops[l][j];
+            const Vec3 across = glm::cross(loops[l][i] - from, front.normal);
+            const double length = glm::length(across);
+            if (!(length > 0.0)) continue;
+            std::vector<OuterPiece> cut;
+            for (OuterPiece& piece : pieces) {
+                double lowest = size, left = 0.0, right = 0.0;
+                const auto beyond = [&](const Vec2& at) {
+                    return glm::dot(corner(*piece.facet, at) - from, across) / length;
+                };
+                for (const Vec2& at : piece.corners) {
+                    lowest = std::min(lowest, front.distance(corner(*piece.facet, at)));
+                    left = std::min(left, beyond(at));
+                    right = std::max(right, beyond(at));
+                }
+                constexpr double sliver = 1e-9;
+                if (lowest > narrow * size || left > -sliver * size || right < sliver * size) {
+                    cut.push_back(std::move(piece));
+                    continue;
+                }
+                for (const double side : {-1.0, 1.0}) {
+                    cutter.begin(piece.corners);
+                    cutter.keep([&](const Vec2& at) { return side * beyond(at); });
+                    if (cutter.loop().size() >= 3)
+                        cut.push_back({piece.facet, {cutter.loop().begin(), cutter.loop().end()}});
+                }
+            }
+            pieces = std::move(cut);
+        }
     return pieces;
 }
 
@@ -282,13 +334,17 @@ private:
         const ElementShape& outer = swapped ? b_ : a_;
         const ElementShape& inner = swapped ? a_ : b_;
         const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);
-        const double slack = horizon_slack * (a_.radius + b_.radius);
+        const double slack = horizon_slack(a_, b_);
         const Loops3 loops = cut_to_front(inner.outline, outer_front, slack);
-        const std::vector<OuterPiece> pieces = pieces_in_front(outer, inner_front, slack);
+        const std::vector<OuterPiece> pieces = cut_below_edges(pieces_in_front(outer, inner_front, slack),
+                                                               loops, inner_front, 2.0 * outer.radius);
         if (loops.empty() || pieces.empty()) return;
         const InnerPolygon polygon{loops, inner.facets.front().corners[0], inner_front.normal};
         const double gather_tolerance = gather_share * options_.tolerance;
-        OuterOptions outer_options{.tolerance = options_.tolerance, .polygon = &polygon, .refine = false};
+        OuterOptions outer_options{.tolerance = options_.tolerance,
+                                   .floor = negligible * std::sqrt(outer.area / inner.area),
+                                   .polygon = &polygon,
+                                   .refine = false};
         OuterResult result;
         if (sight == Sight::Clear) {
             WholePolygon gather(inner, loops, gather_tolerance);
@@ -329,6 +385,7 @@ private:
     static constexpr double gather_share = 0.1;       ///< of the tolerance for the inner integrals
     static constexpr double sampled_tolerance = 1e-2; ///< finer outer quadrature would only cost rays
     static constexpr double nodes_guess = 0.1;
+    static constexpr double negligible = 1e-5; ///< of the largest block that elements of such areas can have
 
     const ElementShape& a_;
     const ElementShape& b_;
@@ -341,7 +398,7 @@ private:
 // Whether b has a point in front of the plane of a planar element.
 bool in_front_of(const ElementShape& planar, const ElementShape& other) {
     const HalfSpace front = front_of(planar);
-    const double slack = horizon_slack * (planar.radius + other.radius);
+    const double slack = horizon_slack(planar, other);
     const double height = front.distance(other.centre);
     if (height + other.radius <= slack) return false;
     if (height - other.radius > slack) return true;

@@ -11,7 +11,9 @@
 namespace kinelux::kernel {
 
 struct TransportOptions {
-    double tolerance = 1e-3; ///< of a block with nothing in between, relative to its size [1], 1e-9..0.1
+    double tolerance =
+        1e-3; ///< of a block with nothing in between [1], 1e-9..0.1, relative to its size, or to 1e-5
+              ///< of the largest block that elements of such areas can have
     double sight_tolerance = 1e-2; ///< of a block with something in between [1], tolerance..0.1
     bool occlusion = true;         ///< false: nothing stands between any pair
     bool exact_sight = true;       ///< visible parts of polygons by clipping where few polygons can hide them

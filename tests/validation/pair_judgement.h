@@ -31,7 +31,7 @@ struct Judgement {
 constexpr double judge_share = 0.3;
 
 /// A block as small is not asked to be right to a share of itself.
-constexpr double negligible_norm = 1e-6;
+constexpr double negligible_norm = 1e-5;
 
 /// @throws OptionError  no class of that name
 PairClass class_named(std::string_view name);
