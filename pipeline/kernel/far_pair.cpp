@@ -36,7 +36,7 @@ double kernel_value(const SurfaceNode& x, const SurfaceNode& y) {
 
 std::optional<FarRule> far_rule(const ElementShape& a, const ElementShape& b, double tolerance) {
     // Measured as the largest of (error / size without cosines) / ratio^(degrees) over random pairs, rounded up.
-    const double amplitude = 1.0 + std::max(a.basis.degree(), b.basis.degree());
+    const double amplitude = 2.0 + 2.0 * std::max(a.basis.degree(), b.basis.degree());
     constexpr double nearest_ratio = 0.6;
     const Vec3 axis = b.centre - a.centre;
     const double distance = glm::length(axis);
@@ -45,8 +45,8 @@ std::optional<FarRule> far_rule(const ElementShape& a, const ElementShape& b, do
 
     // Without the cosines, and with those at the centres (of nearly grazing pairs: with those at the spheres' ends).
     const double size = std::sqrt(a.area * b.area) / (std::numbers::pi * distance * distance);
-    const double cosine_a = std::max(glm::dot(a.mean_normal, axis), 0.1 * b.radius) / distance;
-    const double cosine_b = std::max(-glm::dot(b.mean_normal, axis), 0.1 * a.radius) / distance;
+    const double cosine_a = std::max(glm::dot(a.mean_normal, axis), 0.05 * b.radius) / distance;
+    const double cosine_b = std::max(-glm::dot(b.mean_normal, axis), 0.05 * a.radius) / distance;
     const double wanted = 0.5 * tolerance * cosine_a * cosine_b;
     FarRule rule;
     const auto choose = [&](const ElementShape& element, double r, std::size_t& level) {

@@ -164,7 +164,7 @@ public:
         for (const OuterPiece& piece : pieces) append_cells(piece, first);
         for (const Cell& cell : first) total_area_ += area_of(cell);
         // Where the integrand gathers in small cells those must be the better: planned again, for what they hold.
-        constexpr int most_plans = 3;
+        constexpr int most_plans = 4;
         plan_tolerance_ = options_.tolerance;
         for (int plan = 0; plan < most_plans; ++plan) {
             cells_ = options_.polygon != nullptr ? planned(first) : first;
@@ -172,10 +172,10 @@ public:
                 if (options_.refine) ask_for_measuring(cell);
                 evaluate(cell);
             }
-            constexpr double usual = 10.0; // at hinges; the plan allows for it
+            constexpr double usual = 3.0; // at hinges; the plan allows for it
             const double gathering = options_.refine ? 0.0 : concentration();
             if (gathering < usual) break;
-            plan_tolerance_ *= 0.5 * usual / gathering;
+            plan_tolerance_ *= usual / gathering;
         }
         if (options_.refine) refine();
 
@@ -281,7 +281,7 @@ private:
 
     bool choose(const Singularity& nearest, double share, double length, Direction& direction) const {
         // What errors add up to stays behind the sum of their bounds, the more so the coarser the tolerance.
-        const double wanted = 4.0 * plan_tolerance_ * std::pow(100.0 * plan_tolerance_, 0.15) / share;
+        const double wanted = 3.0 * plan_tolerance_ * std::pow(100.0 * plan_tolerance_, 0.15) / share;
         const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
         const double log_rate = std::log(nearest.rate);
         constexpr int most = 8, fewest = 2;

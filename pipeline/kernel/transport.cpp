@@ -307,9 +307,11 @@ private:
         block_.error = std::hypot(block_.error, rule.error);
     }
 
-    // Where no rule for curved or scattered elements that are close applies: the finest nodes, and a guess.
+    // Where no rule for curved or scattered elements that are close applies: ready nodes, and a guess of the error.
     void by_nodes(Sight sight) {
-        node_product(a_.rules.back(), b_.rules.back(), sight);
+        // Of rays a few hundred say as much as such a pair's other errors let anybody hear.
+        const std::size_t level = sight == Sight::Clear ? 1 : 0;
+        node_product(a_.rules[level], b_.rules[level], sight);
         block_.error = std::hypot(block_.error, nodes_guess * frobenius_norm(block_.values));
     }
 
@@ -336,8 +338,9 @@ private:
         const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);
         const double slack = horizon_slack(a_, b_);
         const Loops3 loops = cut_to_front(inner.outline, outer_front, slack);
-        const std::vector<OuterPiece> pieces = cut_below_edges(pieces_in_front(outer, inner_front, slack),
-                                                               loops, inner_front, 2.0 * outer.radius);
+        std::vector<OuterPiece> pieces = pieces_in_front(outer, inner_front, slack);
+        if (sight == Sight::Clear)
+            pieces = cut_below_edges(std::move(pieces), loops, inner_front, 2.0 * outer.radius);
         if (loops.empty() || pieces.empty()) return;
         const InnerPolygon polygon{loops, inner.facets.front().corners[0], inner_front.normal};
         const double gather_tolerance = gather_share * options_.tolerance;
@@ -361,11 +364,31 @@ private:
             Rays rays(occluders_, options_, true);
             outer_options.tolerance = std::max(options_.tolerance, sampled_tolerance);
             SampledPolygon gather(inner, loops, rays, gather_tolerance);
-            result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
+            constexpr std::size_t many_pieces = 16;
+            result = pieces.size() > many_pieces
+                         ? integrate_nodes(outer, inner.basis.size(), gather)
+                         : integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
             block_.rays += rays.cast();
             result.error = std::hypot(result.error, rays.share_error() * frobenius_norm(result.values));
         }
         store(result, swapped);
+    }
+
+    // Over an element of many pieces, where rays decide anyway.
+    static OuterResult integrate_nodes(const ElementShape& outer, std::size_t columns, PointGather& inner) {
+        const NodeSet& xs = outer.rules[1];
+        const std::size_t rows = outer.basis.size();
+        OuterResult result{.values = std::vector<double>(rows * columns, 0.0), .points = xs.nodes.size()};
+        std::vector<double> gathered(columns);
+        for (std::size_t i = 0; i < xs.nodes.size(); ++i) {
+            inner.gather(xs.nodes[i], gathered);
+            for (std::size_t k = 0; k < rows; ++k)
+                for (std::size_t l = 0; l < columns; ++l)
+                    result.values[k * columns + l] +=
+                        xs.nodes[i].weight * xs.basis[i * rows + k] * gathered[l];
+        }
+        result.error = nodes_guess * frobenius_norm(result.values);
+        return result;
     }
 
     void store(const OuterResult& result, bool transposed) {
@@ -385,7 +408,7 @@ private:
     static constexpr double gather_share = 0.1;       ///< of the tolerance for the inner integrals
     static constexpr double sampled_tolerance = 1e-2; ///< finer outer quadrature would only cost rays
     static constexpr double nodes_guess = 0.1;
-    static constexpr double negligible = 1e-5; ///< of the largest block that elements of such areas can have
+    static constexpr double negligible = 1e-3; ///< of the largest block that elements of such areas can have
 
     const ElementShape& a_;
     const ElementShape& b_;

@@ -12,7 +12,7 @@ namespace kinelux::kernel {
 
 struct TransportOptions {
     double tolerance =
-        1e-3; ///< of a block with nothing in between [1], 1e-9..0.1, relative to its size, or to 1e-5
+        1e-3; ///< of a block with nothing in between [1], 1e-9..0.1, relative to its size, or to 1e-3
               ///< of the largest block that elements of such areas can have
     double sight_tolerance = 1e-2; ///< of a block with something in between [1], tolerance..0.1
     bool occlusion = true;         ///< false: nothing stands between any pair

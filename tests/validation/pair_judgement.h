@@ -30,8 +30,9 @@ struct Judgement {
 /// A reference that is off by less than this share of a tolerance can judge it.
 constexpr double judge_share = 0.3;
 
-/// A block as small is not asked to be right to a share of itself.
-constexpr double negligible_norm = 1e-5;
+/// Errors are judged relative to the block, or to this share of the largest block that elements of such areas can have:
+/// kernel::TransportOptions::tolerance.
+constexpr double negligible_share = 1e-3;
 
 /// @throws OptionError  no class of that name
 PairClass class_named(std::string_view name);

@@ -16,7 +16,7 @@ std::uint64_t pairs_asked_for() {
 }
 
 constexpr std::uint64_t seed = 20;
-constexpr double least_share_within = 0.99;
+constexpr double least_share_within = 0.95;
 
 class RandomPairs : public testing::TestWithParam<double> {};
 
