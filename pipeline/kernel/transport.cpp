@@ -278,8 +278,9 @@ public:
 private:
     Sight look() {
         if (!options_.occlusion || occluders_.empty()) return Sight::Clear;
-        const Sight sight = blockers_.between(visibility::shaft_end(a_), visibility::shaft_end(b_),
-                                              occluders_.polygons(), options_.occluders, options_.most_blockers);
+        const Sight sight =
+            blockers_.between(visibility::shaft_end(a_), visibility::shaft_end(b_), occluders_.polygons(),
+                              options_.occluders, options_.most_blockers);
         return sight == Sight::Many ? probed() : sight;
     }
 

@@ -105,8 +105,7 @@ Judgement judge(const PairRecipe& recipe, double tolerance) {
     const auto reference = support::pair_reference(pair.a, pair.b, cell);
     judgement.reference_seconds = seconds_since(start);
     judgement.norm = reference.norm;
-    const double largest =
-        std::sqrt(std::min(pair.a.area, pair.b.area) / std::max(pair.a.area, pair.b.area));
+    const double largest = std::sqrt(std::min(pair.a.area, pair.b.area) / std::max(pair.a.area, pair.b.area));
     const double scale = 1.0 / std::max(reference.norm, negligible_share * largest);
     judgement.error = scale * difference(block.values, reference.values);
     judgement.estimate = scale * block.error;
