@@ -8,7 +8,7 @@
 #include "cli/stage.h"
 #include "core/log.h"
 #include "light_case.h"
-#include "motion/frame_blocks.h"
+#include "motion/exact_engine.h"
 #include "reports.h"
 #include "solve/animation.h"
 
@@ -66,8 +66,8 @@ int main(int argc, char** argv) {
             stage.step("read coefficients", [&] { return stage.folder().read_coefficients(); });
         const std::vector<double> areas = light.areas();
         const auto frames = stages::frames_of(light.scene, range);
-        motion::FrameUpdater updater(blocks, light.elements, light.scene, light.plan, light.occluders,
-                                     light.transport_options(seed));
+        motion::ExactEngine engine(blocks, light.elements, light.plan, light.occluders,
+                                   light.transport_options(seed));
         core::Progress progress("solve", frames.size());
         const auto show = [&](const model::FrameSolution& frame) {
             cli::Stage::throw_if_stopped();
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
         };
         const model::Solution solution = stage.step("solve", [&] {
             return solve::solve_animation({light.scene, light.plan, blocks, light.tree.elements, areas},
-                                          updater, frames, options.for_target(light.scene.accuracy.target),
+                                          engine, frames, options.for_target(light.scene.accuracy.target),
                                           show);
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });

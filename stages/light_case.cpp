@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "motion/frame_blocks.h"
+#include "motion/exact_engine.h"
 #include "solve/animation.h"
 
 namespace kinelux::stages {
@@ -81,10 +81,11 @@ std::vector<double> row_sums(std::span<const coefficients::FormFactor> factors, 
 
 model::Coefficients coefficients_at(model::Coefficients coefficients, LightCase& light, std::uint32_t frame,
                                     std::uint64_t seed) {
-    motion::FrameUpdater updater(coefficients, light.elements, light.scene, light.plan, light.occluders,
-                                 light.transport_options(seed));
-    coefficients.static_blocks =
-        solve::blocks_at(coefficients.static_blocks, updater.at(light.scene.time.time_of_frame(frame)));
+    motion::ExactEngine engine(coefficients, light.elements, light.plan, light.occluders,
+                               light.transport_options(seed));
+    const double time_s = light.scene.time.time_of_frame(frame);
+    coefficients.static_blocks = solve::blocks_at(
+        coefficients.static_blocks, engine.advance(time_s, geometry::object_poses(light.scene, time_s)));
     return coefficients;
 }
 

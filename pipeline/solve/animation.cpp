@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "geometry/pose.h"
 #include "model/hierarchy.h"
 
 namespace kinelux::solve {
@@ -222,7 +223,7 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     return result;
 }
 
-model::Solution solve_animation(const Animation& animation, motion::FrameUpdater& updater,
+model::Solution solve_animation(const Animation& animation, motion::Engine& engine,
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
                                 const std::function<void(const FrameSolution&)>& progress) {
     const model::Coefficients& coefficients = animation.coefficients;
@@ -250,14 +251,15 @@ model::Solution solve_animation(const Animation& animation, motion::FrameUpdater
             solution.frames.push_back(std::move(same));
             continue;
         }
-        const motion::FrameBlocks changed = updater.at(time_s);
+        const motion::FrameBlocks changed =
+            engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
         blocks.replace(changed.pairs, changed.blocks);
 
         FrameSolution frame =
             animation.plan.bounces == 0 ? direct_only(transport, light) : solver.solve_frame(transport);
         frame.frame = number;
         frame.time_s = time_s;
-        frame.blocks_recomputed = static_cast<std::uint32_t>(changed.pairs.size());
+        frame.blocks_recomputed = static_cast<std::uint32_t>(changed.computed);
         frame.element_error =
             irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
                               animation.areas, light.exitance, frame, light.channels, coefficients.hierarchy);

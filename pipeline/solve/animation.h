@@ -11,7 +11,7 @@
 #include "model/plan.h"
 #include "model/scene.h"
 #include "model/solution.h"
-#include "motion/frame_blocks.h"
+#include "motion/engine.h"
 #include "solve/solve.h"
 
 namespace kinelux::solve {
@@ -25,13 +25,13 @@ struct Animation {
     std::span<const double> areas;            ///< one per element [m2]
 };
 
-/// Solves the frames one after the other: the blocks of each from the updater, the light from the frames before it.
+/// Solves the frames one after the other: the blocks of each from the engine, the light from the frames before it.
 /// Scenes in which all channels are proportional are solved once and scaled; a plan without bounces gives the direct
 /// light alone. Each frame carries its error estimate: of irradiance per element from the errors of the blocks and the
 /// residual, of radiosity over all.
 /// @param frames    numbers of the frames to solve, ascending
 /// @param progress  called after each frame; what it throws ends the work
-model::Solution solve_animation(const Animation& animation, motion::FrameUpdater& updater,
+model::Solution solve_animation(const Animation& animation, motion::Engine& engine,
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
                                 const std::function<void(const model::FrameSolution&)>& progress);
 

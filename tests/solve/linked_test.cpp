@@ -8,6 +8,7 @@
 #include "coefficients/coefficients.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "motion/exact_engine.h"
 #include "solve/animation.h"
 #include "support/shapes.h"
 
@@ -189,9 +190,9 @@ TEST(LinkedOperator, frames_with_a_moving_lamp_equal_those_of_all_pairs) {
         const auto coefficients = coefficients::compute_coefficients(rooms.shapes, rooms.scene, rooms.plan,
                                                                      occluders, options, 1e6, {.use = use});
         EXPECT_FALSE(coefficients.crossed_pairs.empty());
-        motion::FrameUpdater updater(coefficients, rooms.shapes, rooms.scene, rooms.plan, occluders, options);
+        motion::ExactEngine engine(coefficients, rooms.shapes, rooms.plan, occluders, options);
         auto solution = solve_animation({rooms.scene, rooms.plan, coefficients, tree.elements, rooms.areas},
-                                        updater, frames, {.tolerance = 1e-6}, [](const auto&) {});
+                                        engine, frames, {.tolerance = 1e-6}, [](const auto&) {});
         return std::pair(std::move(solution), coefficients.crossed_pairs);
     };
     const auto [expected, crossed] = solved(Grouping::Never);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "coefficients/coefficients.h"
+#include "motion/exact_engine.h"
 #include "support/shapes.h"
 
 namespace kinelux {
@@ -34,11 +35,11 @@ struct Room {
         visibility::Occluders occluders(visibility::bodies_of(patches, scene));
         const auto options = coefficients::transport_options_for(scene, plan, shapes);
         const auto blocks = coefficients::compute_coefficients(shapes, scene, plan, occluders, options, 1e6);
-        motion::FrameUpdater updater(blocks, shapes, scene, plan, occluders, options);
+        motion::ExactEngine engine(blocks, shapes, plan, occluders, options);
         std::vector<double> areas;
         areas.reserve(shapes.size());
         for (const auto& shape : shapes) areas.push_back(shape.area);
-        return solve::solve_animation({scene, plan, blocks, tree.elements, areas}, updater, frames, {},
+        return solve::solve_animation({scene, plan, blocks, tree.elements, areas}, engine, frames, {},
                                       [](const model::FrameSolution&) {});
     }
 };

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/frame_blocks.h"
+#include "motion/exact_engine.h"
 
 #include <algorithm>
 #include <map>
 
 #include "core/parallel.h"
+#include "motion/posed_elements.h"
 
 namespace kinelux::motion {
 
@@ -12,32 +13,6 @@ namespace {
 
 using geometry::ElementShape;
 using model::ElementPair;
-
-// The elements of moving bodies in their place at one time; all others stay as they are at rest.
-class PosedElements {
-public:
-    PosedElements(std::span<const ElementShape> rest, const model::Plan& plan,
-                  std::span<const geometry::Pose> poses)
-        : rest_(rest), index_(rest.size(), none) {
-        for (const ElementShape& element : rest)
-            if (std::find(plan.moving_objects.begin(), plan.moving_objects.end(), element.object) !=
-                plan.moving_objects.end()) {
-                index_[element.id.value] = moved_.size();
-                moved_.push_back(geometry::moved(element, poses[element.object.value]));
-            }
-    }
-
-    const ElementShape& operator[](std::size_t element) const {
-        return index_[element] == none ? rest_[element] : moved_[index_[element]];
-    }
-    std::span<const ElementShape> moving() const { return moved_; }
-
-private:
-    static constexpr std::size_t none = static_cast<std::size_t>(-1);
-    std::span<const ElementShape> rest_;
-    std::vector<std::size_t> index_;
-    std::vector<ElementShape> moved_;
-};
 
 struct Ball {
     Vec3 centre;
@@ -74,20 +49,17 @@ bool shaded(const ElementShape& a, const ElementShape& b, const visibility::Occl
 
 } // namespace
 
-FrameUpdater::FrameUpdater(const model::Coefficients& coefficients,
-                           std::span<const ElementShape> rest_elements, const model::Scene& scene,
-                           const model::Plan& plan, visibility::Occluders& occluders,
-                           const kernel::TransportOptions& options)
+ExactEngine::ExactEngine(const model::Coefficients& coefficients, std::span<const ElementShape> rest_elements,
+                         const model::Plan& plan, visibility::Occluders& occluders,
+                         const kernel::TransportOptions& options)
     : coefficients_(coefficients),
       rest_(rest_elements),
-      scene_(scene),
       plan_(plan),
       occluders_(occluders),
       options_(options) {}
 
-FrameBlocks FrameUpdater::at(double time_s) {
+FrameBlocks ExactEngine::advance(double /*time_s*/, std::span<const geometry::Pose> poses) {
     FrameBlocks result;
-    const auto poses = geometry::object_poses(scene_, time_s);
     occluders_.set_poses(poses);
     if (plan_.moving_objects.empty()) return result;
     const PosedElements elements(rest_, plan_, poses);
@@ -126,6 +98,7 @@ FrameBlocks FrameUpdater::at(double time_s) {
     for (const std::size_t k : order) {
         const kernel::TransportBlock& block = slots[k].block;
         result.pairs.push_back(candidates[k]);
+        ++result.computed;
         result.rays += block.rays;
         if (block.values.empty()) continue;
         result.blocks.entries.push_back(

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "model/coefficients.h"
+
+namespace kinelux::motion {
+
+/// The transport blocks that differ from the static ones at one time.
+struct FrameBlocks {
+    model::BlockSet blocks;                ///< replace or add to the static blocks; a listed pair without an
+                                           ///< entry in `blocks` is zero now
+    std::vector<model::ElementPair> pairs; ///< all pairs whose block is not the static one, sorted
+    std::uint64_t computed = 0;            ///< blocks integrated for it; the others were expanded or kept
+    std::uint64_t rays = 0;
+};
+
+/// How blocks change when bodies move: one way to get them at a time.
+class Engine {
+public:
+    virtual ~Engine() = default;
+
+    /// The blocks at the poses of one frame.
+    /// @param time_s  of the frame [s]
+    /// @param poses   world_from_rest, one per object of the scene
+    virtual FrameBlocks advance(double time_s, std::span<const geometry::Pose> poses) = 0;
+};
+
+} // namespace kinelux::motion
