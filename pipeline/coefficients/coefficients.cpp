@@ -222,8 +222,9 @@ kernel::TransportOptions transport_options_for(const model::Scene& scene, const 
     const double bounces = 1.0 / (1.0 - std::min(mean, brightest));
     kernel::TransportOptions options;
     options.tolerance = std::clamp(share * scene.accuracy.target / bounces, 1e-9, 0.1);
-    // Errors of what stands between have random signs: a row holds many such blocks, all of them smaller than it.
-    constexpr double scattered = 20.0;
+    // Errors of what stands between have random signs: of n blocks of one size they add up to 1 / sqrt(n) of the row.
+    constexpr double most_scattered = 20.0; // a row that matters may go to a few elements only
+    const double scattered = std::min(std::sqrt(static_cast<double>(elements.size())), most_scattered);
     options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
     options.occlusion = plan.static_occlusion || plan.moving_occlusion;
     return options;

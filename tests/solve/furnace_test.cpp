@@ -71,7 +71,7 @@ Furnace furnace(const support::ClosedRoom& room, double rho, double accuracy, do
 void expect_even_glow(double accuracy, double share) {
     fmt::print("| room | rho | elements | blocks' tolerance | largest row defect | radiosity, relative L2 | worst element "
                "| CPU seconds |\n|---|---|---|---|---|---|---|---|\n");
-    for (const support::ClosedRoom& room : support::closed_rooms())
+    for (const support::ClosedRoom& room : support::closed_rooms()) if (!std::getenv("ROOM") || room.name.find(std::getenv("ROOM"))!=std::string::npos)
         for (const double rho : {0.5, 0.9, 0.99}) {
             const Furnace found = furnace(room, rho, accuracy, share * room.longest_edge);
             fmt::print("| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.2f} |\n", room.name, rho,
@@ -84,7 +84,7 @@ void expect_even_glow(double accuracy, double share) {
 }
 
 TEST(Furnace, closed_rooms_glow_evenly_within_3_percent) { expect_even_glow(0.03, 0.25); }
-TEST(Furnace, closed_rooms_glow_evenly_within_1e_4) { expect_even_glow(1e-4, 0.5); }
+TEST(Furnace, closed_rooms_glow_evenly_within_1e_4) { expect_even_glow(1e-4, 0.25); }
 
 } // namespace
 } // namespace kinelux::solve
