@@ -19,7 +19,7 @@ using hard_cases::HardRoom;
 // The largest deviation of a row sum in one place.
 double deviation(const HardRoom& room, const support::Placement& place) {
     const model::PatchSet set = support::placed(room.set, place);
-    const auto elements = geometry::element_shapes(set, room.tree, room.degree, 0);
+    const auto elements = geometry::element_shapes(set, support::placed(room.tree, place), room.degree, 0);
     const auto scene = support::plain_scene(1);
     const auto blocks =
         compute_coefficients(elements, scene, {.degree = room.degree}, support::occluders_of(set, scene),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "model/cluster_tree.h"
 #include "model/patch_set.h"
 
 namespace kinelux::support {
@@ -40,6 +41,13 @@ inline model::PatchSet placed(model::PatchSet set, const Placement& place) {
     }
     for (Vec3& point : set.small.points) point = place.point(point);
     return set;
+}
+
+/// Elements of such patches: their domains are in the patches' own coordinates.
+inline model::ClusterTree placed(model::ClusterTree tree, const Placement& place) {
+    for (model::DomainTriangle& triangle : tree.domain_triangles)
+        for (Vec2& point : triangle) point *= place.scale;
+    return tree;
 }
 
 } // namespace kinelux::support
