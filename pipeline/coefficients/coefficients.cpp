@@ -219,7 +219,8 @@ double bouncing_reflectance(const model::Scene& scene, std::span<const ElementSh
     double result = 0.0;
     for (std::size_t m = 0; m < areas.size(); ++m) {
         const auto& rho = scene.materials[m].reflectance;
-        if (areas[m] > least_area * total) result = std::max(result, *std::max_element(rho.begin(), rho.end()));
+        if (areas[m] > least_area * total)
+            result = std::max(result, *std::max_element(rho.begin(), rho.end()));
     }
     return std::min(result, brightest);
 }

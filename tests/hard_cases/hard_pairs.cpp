@@ -53,27 +53,31 @@ void add_contacts(std::vector<HardPair>& pairs) {
     // Both copies are seen in full, as coplanar faces never hide each other: rows of what sees them count both.
     pairs.push_back(pair("duplicate of the receiver there", {facing_up(), facing_down(1.0), facing_down(1.0)},
                          support::parallel_equal_rectangles(1, 1, 1), asked));
-    pairs.push_back(pair("receiver reversed", {facing_up(), rectangle({0, 0, 1}, {1, 0, 0}, {0, 1, 0})}, 0.0,
-                         none));
+    pairs.push_back(
+        pair("receiver reversed", {facing_up(), rectangle({0, 0, 1}, {1, 0, 0}, {0, 1, 0})}, 0.0, none));
     pairs.push_back(pair("neighbours in one plane", {facing_up(), rectangle({1, 0, 0}, {1, 0, 0}, {0, 1, 0})},
                          0.0, none));
     pairs.push_back(pair("neighbours in one plane, one reversed",
                          {facing_up(), rectangle({1, 0, 0}, {0, 1, 0}, {1, 0, 0})}, 0.0, none));
-    pairs.push_back(pair("foot of a box that stands on a table, its side", {facing_up(), wall(0.5, 0.3, 0.7, 0, 0.2)},
+    pairs.push_back(pair("foot of a box that stands on a table, its side",
+                         {facing_up(), wall(0.5, 0.3, 0.7, 0, 0.2)},
                          0.5 * support::perpendicular_rectangles({0, 1, 0, 0.5}, {0.3, 0.7, 0, 0.2}), asked));
 }
 
 void add_crossings(std::vector<HardPair>& pairs) {
     // Of either the half in front of the other counts: they meet in a common edge.
     const double upright = 0.5 * support::perpendicular_rectangles_common_edge(1, 0.5, 0.5);
-    pairs.push_back(pair("crossing at right angles", {facing_up(), wall(0.5, 0, 1, -0.5, 0.5)}, upright, asked));
+    pairs.push_back(
+        pair("crossing at right angles", {facing_up(), wall(0.5, 0, 1, -0.5, 0.5)}, upright, asked));
     pairs.push_back(pair("crossing at right angles, other side",
                          {facing_up(), wall_facing_back(0.5, 0, 1, -0.5, 0.5)}, upright, asked));
     const double angle = std::numbers::pi / 3.0;
-    const Vec3 along(std::cos(angle), 0, std::sin(angle)), across(0, 1, 0), corner = Vec3(0.5, 0, 0) - 0.5 * along;
+    const Vec3 along(std::cos(angle), 0, std::sin(angle)), across(0, 1, 0),
+        corner = Vec3(0.5, 0, 0) - 0.5 * along;
     pairs.push_back(pair("crossing at 60 degrees", {facing_up(), rectangle(corner, across, along)},
                          0.5 * support::hinged_rectangles(1, 0.5, 0.5, angle), asked));
-    pairs.push_back(pair("crossing at 60 degrees, other side", {facing_up(), rectangle(corner, along, across)},
+    pairs.push_back(pair("crossing at 60 degrees, other side",
+                         {facing_up(), rectangle(corner, along, across)},
                          0.5 * support::hinged_rectangles(1, 0.5, 0.5, std::numbers::pi - angle), asked));
 }
 
@@ -81,7 +85,8 @@ void add_slivers(std::vector<HardPair>& pairs) {
     constexpr double thin = 1e-4;
     pairs.push_back(pair("floor to a sliver of 1e4 at a wall's foot", {facing_up(), wall(0, 0, 1, 0, thin)},
                          support::perpendicular_rectangles_common_edge(1, 1, thin), asked));
-    pairs.push_back(pair("sliver of 1e4 along a wall to the wall", {facing_up(thin, 1.0), wall(0, 0, 1, 0, 2)},
+    pairs.push_back(pair("sliver of 1e4 along a wall to the wall",
+                         {facing_up(thin, 1.0), wall(0, 0, 1, 0, 2)},
                          support::perpendicular_rectangles_common_edge(1, thin, 2), asked));
     pairs.push_back(pair("sliver of 1e4 along a wall, 1e-3 from it",
                          {rectangle({1e-3, 0, 0}, {thin, 0, 0}, {0, 1, 0}), wall(0, 0, 1, 0, 2)},
@@ -111,12 +116,13 @@ void add_specks(std::vector<HardPair>& pairs) {
     const Patch beside = at(0, speck);
     pairs.push_back(pair("1e-6 m in a hall of 100 m, to the wall it touches", {beside, tall},
                          kernel::polygon_form_factor(corners_of(beside), corners_of(tall)).value, asked));
-    pairs.push_back(pair("sizes 1e5 to 1, touching at right angles", {at(0, small), tall},
-                         support::perpendicular_rectangles({-0.5 * small, 0.5 * small, 0, small}, {-50, 50, 0, 100}),
-                         asked));
+    pairs.push_back(pair(
+        "sizes 1e5 to 1, touching at right angles", {at(0, small), tall},
+        support::perpendicular_rectangles({-0.5 * small, 0.5 * small, 0, small}, {-50, 50, 0, 100}), asked));
     pairs.push_back(pair("sizes 1e5 to 1, facing at 1e-3",
                          {at(0, small), rectangle({-50, -50, 1e-3}, {0, 100, 0}, {100, 0, 0})},
-                         support::parallel_rectangles({0, small, 0, small}, {-50, 50, -50, 50}, 1e-3), asked));
+                         support::parallel_rectangles({0, small, 0, small}, {-50, 50, -50, 50}, 1e-3),
+                         asked));
 }
 
 void add_horizons(std::vector<HardPair>& pairs) {

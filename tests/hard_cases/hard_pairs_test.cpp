@@ -29,8 +29,7 @@ double deviation(const HardPair& pair, const support::Placement& place, int degr
     const double factor =
         block.values.empty() ? 0.0 : block.values[0] * std::sqrt(shapes[1].area / shapes[0].area);
     EXPECT_GE(factor, 0.0) << where;
-    const double deviation =
-        pair.expected > 0.0 ? std::abs(factor / pair.expected - 1.0) : std::abs(factor);
+    const double deviation = pair.expected > 0.0 ? std::abs(factor / pair.expected - 1.0) : std::abs(factor);
     EXPECT_LE(deviation, pair.bound) << where << ": " << factor << " instead of " << pair.expected;
     return deviation;
 }
@@ -51,7 +50,8 @@ TEST(PointOnTheHorizon, receives_what_the_closed_form_says) {
     for (const Vec3& in_its_plane : {Vec3(0.5, 0.5, 1), Vec3(0, 0.5, 1), Vec3(0, 0, 1), Vec3(2, 2, 1)})
         for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0)})
             EXPECT_EQ(point_to_polygon(in_its_plane, normal, ceiling), 0.0);
-    EXPECT_NEAR(point_to_polygon({0.5, 0.5, 1 - 1e-12}, {0, 0, 1}, ceiling), 1.0, 1e-9) << "all but in contact";
+    EXPECT_NEAR(point_to_polygon({0.5, 0.5, 1 - 1e-12}, {0, 0, 1}, ceiling), 1.0, 1e-9)
+        << "all but in contact";
     // Its lower edge lies on the point's horizon; then the whole polygon does.
     const std::vector<Vec3> standing{{1, 0, 0}, {1, 0, 1}, {1, 2, 1}, {1, 2, 0}};
     EXPECT_NEAR(point_to_polygon({0, 0, 0}, {0, 0, 1}, standing),

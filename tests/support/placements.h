@@ -21,7 +21,8 @@ struct Placement {
 
 /// As it is, turned, in millimetres and kilometres, ten kilometres away, and turned there.
 inline std::vector<Placement> placements() {
-    const Quat turn = glm::normalize(Quat(0.3, 0.5, -0.2, 0.7)), other = glm::normalize(Quat(0.9, 0.1, 0.3, 0.2));
+    const Quat turn = glm::normalize(Quat(0.3, 0.5, -0.2, 0.7)),
+               other = glm::normalize(Quat(0.9, 0.1, 0.3, 0.2));
     return {{"as it is"},
             {"turned", 1.0, {turn, Vec3(0.0)}},
             {"scaled by 1e-3", 1e-3, {}},
