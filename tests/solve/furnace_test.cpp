@@ -12,8 +12,10 @@
 #include "cluster/cluster.h"
 #include "coefficients/coefficients.h"
 #include "plan/plan.h"
+#include "solve/animation.h"
 #include "solve/solve.h"
 #include "support/closed_rooms.h"
+#include "support/planar_patches.h"
 #include "support/shapes.h"
 
 namespace kinelux::solve {
@@ -56,8 +58,9 @@ Glow glow_of(const model::PatchSet& set, model::Scene& scene, double accuracy, d
     const model::UnknownLayout& layout = glow.transport.layout;
     const BlockOperator blocks(layout, glow.transport.static_blocks);
     const auto exitance = constant_coefficients(layout, 1, glow.areas, emitted);
-    const auto solution = solve_system({blocks, 1, exitance, reflectance, glow.areas},
-                                       {.tolerance = std::min(1e-4, 0.01 * accuracy)}, {});
+    const auto solution =
+        solve_system({blocks, 1, exitance, reflectance, glow.areas},
+                     {.tolerance = residual_tolerance(scene, tree.elements, glow.areas)}, {});
     EXPECT_TRUE(solution.converged);
     glow.radiosity = solution.radiosity;
     for (std::size_t e = 0; e < glow.elements.size(); ++e)
@@ -146,6 +149,27 @@ TEST(Furnace, white_cavity_in_a_dark_hall_glows_evenly) {
         if (glow.patches[e] < cavity) worst = std::max(worst, std::abs(glow.means[e] * (1.0 - rho) - 1.0));
     RecordProperty("worst_element", fmt::format("{:.1e}", worst));
     EXPECT_LT(worst, accuracy);
+}
+
+// A lamp of a millionth of the room's area: beside what it emits all that walls send back is small, and is what counts.
+TEST(Furnace, all_light_of_a_tiny_lamp_is_absorbed) {
+    const double rho = 0.9, accuracy = 0.03, low = 0.5, high = 0.5025;
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(1), support::Facing::Inwards);
+    set.patches[0] = support::frame_patch(Vec3(0), {1, 0, 0}, {0, 1, 0}, Vec2(low), Vec2(high));
+    set.patches.push_back(
+        support::rectangle({low, low, 0}, {high - low, 0, 0}, {0, high - low, 0}, {}, MaterialId(1)));
+    model::Scene scene = support::plain_scene(1, rho, 0.0);
+    scene.materials.push_back({"lamp", {rho}, {1.0}, model::Sides::Front});
+    const Glow glow = glow_of(set, scene, accuracy, 0.5);
+    double absorbed = 0.0, emitted = 0.0;
+    for (std::size_t e = 0; e < glow.means.size(); ++e) {
+        const double exitance = scene.materials[glow.elements[e].material.value].exitance.front();
+        absorbed += glow.areas[e] * (glow.means[e] - exitance) * (1.0 - rho) / rho;
+        emitted += glow.areas[e] * exitance;
+    }
+    RecordProperty("lost", fmt::format("{:.1e}", 1.0 - absorbed / emitted));
+    EXPECT_NEAR(absorbed / emitted, 1.0, 0.2 * accuracy);
 }
 
 } // namespace
