@@ -73,21 +73,28 @@ void print_sums(const std::string& kind, const Groups& groups, std::span<const d
     std::vector<double> errors(groups.names.size(), 0.0);
     for (const coefficients::FormFactor& factor : factors) errors[factor.from] += factor.error_estimate;
     const std::vector<double> sums = row_sums(factors, groups.names.size());
-    cli::TextTable table({kind, "area m2", "row sum", "error estimate", "leaves the scene"});
-    bool open = false;
+    cli::TextTable table({kind, "area m2", "row sum", "error estimate", "reaches nothing"});
+    bool open = false, twice = false;
     for (std::size_t g = 0; g < sums.size(); ++g) {
         if (!(areas[g] > 0.0)) continue;
-        // What is missing beyond the errors goes where the scene has no surface.
-        const bool missing = 1.0 - sums[g] > std::max(errors[g], default_accuracy);
+        const double slack = std::max(errors[g], default_accuracy);
+        const bool missing = 1.0 - sums[g] > slack;
         open = open || missing;
+        twice = twice || sums[g] - 1.0 > slack;
         table.row({groups.names[g], fmt::format("{:.6g}", areas[g]), fmt::format("{:.9f}", sums[g]),
                    fmt::format("{:.1e}", errors[g]), missing ? fmt::format("{:.6f}", 1.0 - sums[g]) : "-"});
     }
     fmt::print("{}  Sums are as computed, never normalised: 1 where a scene is closed.\n", table.text());
     if (open)
         fmt::print(
-            "  The scene is open: what leaves it reaches nothing; for balances add surroundings with these "
-            "factors, F(g, surroundings) = 1 - row sum.\n");
+            "  What reaches nothing leaves an open scene, meets the backs of one-sided faces, or cannot "
+            "leave "
+            "where a body touches\n  another one (a cupboard's foot and the floor below it). In balances of "
+            "open scenes it goes to the surroundings:\n  F(g, surroundings) = 1 - row sum.\n");
+    if (twice)
+        fmt::print(
+            "  Sums above 1: surfaces lie on each other twice, or pass through each other; both copies are "
+            "counted.\n");
 }
 
 } // namespace
@@ -116,6 +123,8 @@ int form_factors_command(const std::vector<std::string>& arguments) {
     run.options().add({.member = &frame, .flags = "--frame", .help = "frame whose positions count"});
     if (run.options().parse(arguments) == cli::OptionTable::Parsed::Answered) return 0;
     run.apply();
+    if (!csv.empty() && csv.has_parent_path() && !std::filesystem::is_directory(csv.parent_path()))
+        throw core::FileError(fmt::format("--csv {}: there is no such folder", csv.string()));
 
     std::filesystem::path folder = run.argument();
     if (!std::filesystem::is_directory(folder)) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -34,18 +33,18 @@ struct Options {
                    .unit = "1",
                    .low = 1e-14,
                    .high = 0.1,
-                   .unset = "1/100 of the accuracy, at most 1e-4"});
+                   .unset = "from the accuracy and the lamps' size"});
         table.add({.member = &max_sweeps,
                    .flags = "--max-sweeps",
                    .help = "of the solver per frame",
                    .low = 1,
                    .high = 1e9});
     }
-    solve::SolveOptions for_target(double target) const {
+    solve::SolveOptions with_default(double default_tolerance) const {
         return {.method = method == "shooting"              ? solve::Method::Shooting
                           : method == "conjugate-gradients" ? solve::Method::ConjugateGradients
                                                             : solve::Method::GaussSeidel,
-                .tolerance = tolerance.value_or(std::min(1e-4, 0.01 * target)),
+                .tolerance = tolerance.value_or(default_tolerance),
                 .max_sweeps = max_sweeps};
     }
 };
@@ -68,6 +67,7 @@ int main(int argc, char** argv) {
         const auto frames = stages::frames_of(light.scene, range);
         motion::ExactEngine engine(blocks, light.elements, light.plan, light.occluders,
                                    light.transport_options(seed));
+        const double default_tolerance = solve::residual_tolerance(light.scene, light.tree.elements, areas);
         core::Progress progress("solve", frames.size());
         const auto show = [&](const model::FrameSolution& frame) {
             cli::Stage::throw_if_stopped();
@@ -76,8 +76,7 @@ int main(int argc, char** argv) {
         };
         const model::Solution solution = stage.step("solve", [&] {
             return solve::solve_animation({light.scene, light.plan, blocks, light.tree.elements, areas},
-                                          engine, frames, options.for_target(light.scene.accuracy.target),
-                                          show);
+                                          engine, frames, options.with_default(default_tolerance), show);
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });
         return stages::report_solution(solution, light.scene.accuracy.target, stage);

@@ -57,9 +57,11 @@ Groups groups_of(const model::Scene& scene, const model::PatchSet& patches, cons
         for (const model::Object& object : scene.objects) groups.names.push_back(object.name);
     else {
         for (std::size_t p = 0; p < patches.patches.size(); ++p)
-            groups.names.push_back(fmt::format("patch {}", p));
+            groups.names.push_back(
+                fmt::format("patch {} of {}", p, scene.objects[patches.patches[p].object.value].name));
         for (std::size_t c = 0; c < tree.clusters.size(); ++c)
-            groups.names.push_back(fmt::format("cluster {}", c));
+            groups.names.push_back(
+                fmt::format("cluster {} of {}", c, scene.objects[tree.clusters[c].object.value].name));
     }
     for (const model::Element& element : tree.elements) {
         if (by == GroupBy::Object)

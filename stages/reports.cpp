@@ -93,6 +93,11 @@ void report_coefficients(const model::Coefficients& blocks, const LightCase& lig
         record.set(fmt::format("closure/rows/{}/object", g), groups.names[g]);
         record.set(fmt::format("closure/rows/{}/sum", g), sums[g]);
     }
+    // What an element's row misses, bounces multiply: the worst one says more than the means of objects.
+    const std::vector<double> rows = coefficients::element_row_sums(blocks, light.elements);
+    const auto [smallest, largest] = std::minmax_element(rows.begin(), rows.end());
+    record.set("closure/smallest_element_row", *smallest);
+    record.set("closure/largest_element_row", *largest);
     stage.count("unknowns", blocks.layout.unknowns());
     stage.count("blocks", blocks.static_blocks.entries.size());
     stage.count("groups", blocks.hierarchy.groups.size());
@@ -101,8 +106,9 @@ void report_coefficients(const model::Coefficients& blocks, const LightCase& lig
     stage.count("crossed pairs", blocks.crossed_pairs.size());
     stage.count("rays", static_cast<std::uint64_t>(blocks.rays_cast));
     if (!blocks.hierarchy.empty()) stage.figure("expected error of links", blocks.hierarchy.error_estimate);
-    if (blocks.moving_pairs.empty() && !sums.empty())
-        stage.figure("largest form factor row", *std::max_element(sums.begin(), sums.end()));
+    if (!blocks.moving_pairs.empty()) return;
+    stage.figure("form factor rows miss up to", std::max(1.0 - *smallest, 0.0));
+    stage.figure("exceed 1 by up to", std::max(*largest - 1.0, 0.0));
 }
 
 core::ExitCode report_solution(const model::Solution& solution, double target, cli::Stage& stage) {

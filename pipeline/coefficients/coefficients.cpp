@@ -206,24 +206,37 @@ double linked_memory_mib(std::span<const ElementShape> elements, const model::Hi
     return bytes / (1024.0 * 1024.0);
 }
 
+// The reflectance by which light fades from bounce to bounce where it lives longest: of a scene as a whole, or among its
+// brightest surfaces alone, for these may be a white cavity in a dark hall.
+double bouncing_reflectance(const model::Scene& scene, std::span<const ElementShape> elements) {
+    constexpr double least_area = 0.01, brightest = 0.999; // less area cannot keep light to itself
+    std::vector<double> areas(scene.materials.size(), 0.0);
+    double total = 0.0;
+    for (const ElementShape& element : elements) {
+        areas[element.material.value] += element.area;
+        total += element.area;
+    }
+    double result = 0.0;
+    for (std::size_t m = 0; m < areas.size(); ++m) {
+        const auto& rho = scene.materials[m].reflectance;
+        if (areas[m] > least_area * total)
+            result = std::max(result, *std::max_element(rho.begin(), rho.end()));
+    }
+    return std::min(result, brightest);
+}
+
 } // namespace
 
 kernel::TransportOptions transport_options_for(const model::Scene& scene, const model::Plan& plan,
                                                std::span<const ElementShape> elements) {
-    double area = 0.0, reflected = 0.0;
-    for (const ElementShape& element : elements) {
-        const auto& rho = scene.materials[element.material.value].reflectance;
-        area += element.area;
-        reflected += element.area * *std::max_element(rho.begin(), rho.end());
-    }
-    const double mean = area > 0.0 ? reflected / area : 0.0;
     // The blocks' share of the error budget, and what bounces leave of it.
-    constexpr double share = 0.2, brightest = 0.999;
-    const double bounces = 1.0 / (1.0 - std::min(mean, brightest));
+    constexpr double share = 0.2;
+    const double bounces = 1.0 / (1.0 - bouncing_reflectance(scene, elements));
     kernel::TransportOptions options;
     options.tolerance = std::clamp(share * scene.accuracy.target / bounces, 1e-9, 0.1);
-    // Errors of what stands between have random signs: a row holds many such blocks, all of them smaller than it.
-    constexpr double scattered = 20.0;
+    // Errors of what stands between have random signs: of n blocks of one size they add up to 1 / sqrt(n) of the row.
+    constexpr double most_scattered = 20.0; // a row that matters may go to a few elements only
+    const double scattered = std::min(std::sqrt(static_cast<double>(elements.size())), most_scattered);
     options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
     options.occlusion = plan.static_occlusion || plan.moving_occlusion;
     return options;

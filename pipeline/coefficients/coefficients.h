@@ -62,4 +62,9 @@ std::vector<FormFactor> form_factors(const model::Coefficients& coefficients,
                                      std::span<const geometry::ElementShape> elements,
                                      std::span<const std::uint32_t> group_of, std::uint32_t groups);
 
+/// The share of what leaves each element uniformly that reaches any other, blocks and links together: 1 in a closed
+/// scene. @return  one per element [1]
+std::vector<double> element_row_sums(const model::Coefficients& coefficients,
+                                     std::span<const geometry::ElementShape> elements);
+
 } // namespace kinelux::coefficients

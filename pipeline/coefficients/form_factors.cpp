@@ -69,4 +69,24 @@ std::vector<FormFactor> form_factors(const model::Coefficients& coefficients,
     return result;
 }
 
+std::vector<double> element_row_sums(const model::Coefficients& coefficients,
+                                     std::span<const geometry::ElementShape> elements) {
+    // Everything shines with radiosity 1: sqrt(A_i) sum_j F_ij = sum_j G_ij^00 sqrt(A_j).
+    std::vector<double> sums(elements.size(), 0.0);
+    if (!coefficients.hierarchy.empty()) {
+        const auto& offsets = coefficients.layout.offsets;
+        std::vector<double> sent(coefficients.layout.unknowns(), 0.0), arrived(sent.size(), 0.0);
+        for (std::size_t e = 0; e < elements.size(); ++e) sent[offsets[e]] = std::sqrt(elements[e].area);
+        model::add_link_transport(coefficients.hierarchy, 1, sent, arrived);
+        for (std::size_t e = 0; e < elements.size(); ++e) sums[e] = arrived[offsets[e]];
+    }
+    for (const model::BlockEntry& entry : coefficients.static_blocks.entries) {
+        const auto value = static_cast<double>(coefficients.static_blocks.values[entry.offset]);
+        sums[entry.i] += value * std::sqrt(elements[entry.j].area);
+        if (entry.i != entry.j) sums[entry.j] += value * std::sqrt(elements[entry.i].area);
+    }
+    for (std::size_t e = 0; e < elements.size(); ++e) sums[e] /= std::sqrt(elements[e].area);
+    return sums;
+}
+
 } // namespace kinelux::coefficients

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coefficients/whole_patch_factors.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -30,6 +31,8 @@ Sight sight_between(const ElementShape& a, const ElementShape& b, const visibili
 
 Exchange exchange(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
                   const kernel::TransportOptions& options) {
+    // Measured errors overlook shadow lines that pass between nodes: no less than this of the tolerance is claimed.
+    constexpr double least_claim = 1.0 / 3.0;
     if (a.planar && b.planar) {
         const Sight sight = sight_between(a, b, occluders, options);
         if (sight == Sight::Hidden) return {b.id.value, 0.0, 0.0};
@@ -42,7 +45,8 @@ Exchange exchange(const ElementShape& a, const ElementShape& b, const visibility
     const auto block = kernel::transport(a, b, occluders, options);
     if (block.values.empty()) return {b.id.value, 0.0, 0.0};
     const double scale = std::sqrt(a.area * b.area);
-    return {b.id.value, scale * block.values[0], scale * block.error};
+    const double value = scale * block.values[0];
+    return {b.id.value, value, std::max(scale * block.error, least_claim * options.sight_tolerance * value)};
 }
 
 std::vector<Exchange> row_of(std::size_t i, std::span<const ElementShape> elements,

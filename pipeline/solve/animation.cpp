@@ -130,6 +130,27 @@ std::vector<model::BlockEntry> entries_at(const model::BlockSet& static_blocks,
 
 } // namespace
 
+double residual_tolerance(const model::Scene& scene, std::span<const model::Element> elements,
+                          std::span<const double> areas) {
+    constexpr double least = 1e-12, most = 1e-4, usual = 0.01, of_bounces = 0.1; // of the accuracy
+    double emitted2 = 0.0, bounced2 = 0.0;
+    for (std::size_t c = 0; c < scene.channels.size(); ++c) {
+        double area = 0.0, flux = 0.0, reflected = 0.0;
+        for (std::size_t e = 0; e < elements.size(); ++e) {
+            const model::Material& material = scene.materials[elements[e].material.value];
+            area += areas[e];
+            flux += areas[e] * material.exitance[c];
+            reflected += areas[e] * material.reflectance[c];
+            emitted2 += areas[e] * material.exitance[c] * material.exitance[c];
+        }
+        bounced2 += std::pow(flux * reflected / area, 2.0) / area;
+    }
+    const double target = scene.accuracy.target;
+    const double tolerance = std::min(most, usual * target);
+    if (!(bounced2 > 0.0)) return tolerance;
+    return std::max(std::min(tolerance, of_bounces * target * std::sqrt(bounced2 / emitted2)), least);
+}
+
 model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame) {
     model::BlockSet result;
     const auto add = [&](const model::BlockSet& from) {

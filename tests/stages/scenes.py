@@ -32,6 +32,16 @@ def lamp(low, high, z):
     return [(low[0], low[1], z), (low[0], high[1], z), (high[0], high[1], z), (high[0], low[1], z)], [(0, 1, 2, 3)]
 
 
+def furnished_room(place):
+    """A closed room with a table and a screen as one mesh. @param place  maps a point"""
+    obj = Obj()
+    for name, low, high, inwards in (("room", (0, 0, 0), (4, 5, 2.5), True), ("table", (1, 1, 0.5), (2, 2, 0.75), False),
+                                     ("screen", (2.5, 2, 0.25), (2.75, 4, 2), False)):
+        points, faces = box_faces(low, high, inwards)
+        obj.group(name, [place(*point) for point in points], faces)
+    return obj
+
+
 ROOM = """format = 1
 [scene]
 title = "test room"

@@ -146,9 +146,12 @@ class OneByOneEqualsRun(StageTest):
         self.assertEqual(record["stages"]["clean"]["options"]["accuracy"], 0.08)
         self.assertEqual(json.loads((case / "scene.json").read_text(encoding="utf-8"))["accuracy"]["target"], 0.08)
         self.assertIn("kinelux-solve: ", (self.folder / "log.txt").read_text(encoding="utf-8"))
-        rows = {row["object"]: row["sum"] for row in record["stages"]["coefficients"]["closure"]["rows"]}
-        for name, total in rows.items():
-            self.assertAlmostEqual(total, 1.0, delta=0.03, msg=name)
+        closure = record["stages"]["coefficients"]["closure"]
+        for row in closure["rows"]:
+            self.assertAlmostEqual(row["sum"], 1.0, delta=0.03, msg=row["object"])
+        self.assertAlmostEqual(closure["smallest_element_row"], 1.0, delta=0.05)
+        self.assertAlmostEqual(closure["largest_element_row"], 1.0, delta=0.05)
+        self.assertIn("form factor rows miss up to", (self.folder / "log.txt").read_text(encoding="utf-8"))
 
     def test_dry_run_prints_the_plan_and_solves_nothing(self):
         scene = scenes.write_room(self.folder)
@@ -328,6 +331,35 @@ class FormFactorsAndInfo(StageTest):
             self.assertAlmostEqual(total, 1.0, delta=0.03, msg=name)
         self.run_ok("kinelux", "form-factors", "case", "--csv", "p.csv", "--patches")
         self.assertIn("patch 0", (self.folder / "p.csv").read_text(encoding="utf-8"))
+
+    def test_form_factors_do_not_depend_on_place_turn_and_unit(self):
+        cosine, sine = math.cos(0.7), math.sin(0.7)
+        places = {"as it is": lambda x, y, z: (x, y, z),
+                  "turned": lambda x, y, z: (cosine * x - sine * y, sine * x + cosine * y, z),
+                  "scaled by 1e-3": lambda x, y, z: (1e-3 * x, 1e-3 * y, 1e-3 * z),
+                  "scaled by 1e3": lambda x, y, z: (1e3 * x, 1e3 * y, 1e3 * z),
+                  "moved by 1e4": lambda x, y, z: (x + 6e3, y - 8e3, z)}
+        found = {}
+        for name, place in places.items():
+            scenes.furnished_room(place).write(self.folder / "room.obj")
+            self.run_ok("kinelux", "form-factors", "room.obj", "--csv", "f.csv")
+            with (self.folder / "f.csv").open(encoding="utf-8", newline="") as file:
+                found[name] = {(row["from"], row["to"]): float(row["form_factor"]) for row in csv.DictReader(file)}
+            for pair, value in found["as it is"].items():
+                self.assertAlmostEqual(found[name][pair], value, delta=1e-3, msg=f"{name}: {pair}")
+            for group in ("room", "table", "screen"):
+                total = sum(value for (start, _), value in found[name].items() if start == group)
+                self.assertAlmostEqual(total, 1.0, delta=3e-3, msg=f"{name}: {group}")
+
+    def test_form_factors_say_what_reaches_nothing_and_refuse_a_missing_folder_early(self):
+        obj = scenes.Obj().group("room", *scenes.box_faces((0, 0, 0), (2, 2, 2), True))
+        obj.group("cupboard", *scenes.box_faces((0.5, 0.5, 0), (1, 1, 1), False)).write(self.folder / "room.obj")
+        shown = self.run_ok("kinelux", "form-factors", "room.obj").stdout
+        self.assertIn("a cupboard's foot and the floor below it", shown)
+        row = next(line.split() for line in shown.splitlines() if line.split()[:1] == ["cupboard"])
+        self.assertAlmostEqual(float(row[4]), 0.25 / 2.5, delta=1e-3, msg="its foot")
+        self.assert_fails(3, r"--csv nowhere/f.csv: there is no such folder", "kinelux", "form-factors", "room.obj", "--csv",
+                          "nowhere/f.csv")
 
     def test_form_factors_count_moving_bodies_where_they_are(self):
         scene = scenes.write_room(self.folder, moving=True)

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "closed_form_cases.h"
+#include "coefficients/whole_patch_factors.h"
+#include "support/planar_patches.h"
+#include "support/shapes.h"
 
 namespace kinelux::validation {
 namespace {
@@ -17,6 +20,26 @@ TEST(FormFactor, meets_every_closed_form_at_an_accuracy_of_1e_6) {
 TEST(FormFactor, is_within_a_thousandth_at_the_default_accuracy) {
     for (const ClosedFormCase& item : closed_form_cases())
         EXPECT_NEAR(computed_factor(item, 1e-3) / item.expected, 1.0, 1e-3) << item.name;
+}
+
+// As kinelux form-factors computes them.
+TEST(FormFactor, of_whole_patches_is_off_by_at_most_three_times_its_estimate) {
+    constexpr double of_references = 1e-8,
+                     of_shadows = 2e-5; // of the forms that are limits or sums over points
+    for (const ClosedFormCase& item : closed_form_cases()) {
+        const auto elements =
+            geometry::element_shapes(item.set, support::whole_patch_elements(item.set), 0, 0);
+        const auto occluders = support::occluders_of(item.set, support::plain_scene(elements.size()));
+        std::vector<std::uint32_t> group_of;
+        for (std::uint32_t e = 0; e < elements.size(); ++e) group_of.push_back(e);
+        const auto count = static_cast<std::uint32_t>(elements.size());
+        const auto factors = coefficients::whole_patch_factors(
+            elements, occluders, {.tolerance = 1e-3, .sight_tolerance = 1e-3, .most_blockers = 100}, group_of,
+            count);
+        const double slack = (elements.size() > 2 ? of_shadows : of_references) * item.expected;
+        EXPECT_NEAR(factors[1].value, item.expected, 3.0 * factors[1].error_estimate + slack) << item.name;
+        EXPECT_LE(factors[1].error_estimate, 2e-3 * item.expected) << item.name;
+    }
 }
 
 } // namespace
