@@ -2,6 +2,7 @@
 #include "coefficients/coefficients.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -12,10 +13,12 @@
 
 #include "coefficients/element_tree.h"
 #include "coefficients/links.h"
+#include "coefficients/pair_screen.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "geometry/pose.h"
+#include "kernel/clear_pair.h"
 
 namespace kinelux::coefficients {
 
@@ -78,7 +81,11 @@ class RowBuilder {
 public:
     RowBuilder(std::span<const ElementShape> elements, const model::Scene& scene, const model::Plan& plan,
                const visibility::Occluders& occluders, const kernel::TransportOptions& options)
-        : elements_(elements), occluders_(occluders), options_(options), carriers_(carriers(scene, plan)) {
+        : elements_(elements),
+          occluders_(occluders),
+          options_(options),
+          carriers_(carriers(scene, plan)),
+          screen_(elements, options.occlusion && !occluders.empty() ? &occluders.polygons() : nullptr) {
         if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
     }
 
@@ -86,6 +93,7 @@ public:
         return carriers_[elements_[i].object.value] == carriers_[elements_[j].object.value];
     }
 
+    bool may_exchange(std::size_t i, std::size_t j) const { return screen_.may_exchange(i, j); }
     bool rides(std::size_t i) const { return carriers_[elements_[i].object.value].has_value(); }
     std::span<const Ball> movers() const { return movers_; }
     std::span<const ElementPair> near() const { return near_; }
@@ -130,17 +138,37 @@ private:
         return result;
     }
 
+    static void add(const ElementPair& pair, std::span<const double> values, double error, Row& row) {
+        row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(error)});
+        for (const double value : values) row.values.push_back(static_cast<float>(value));
+    }
+
+    // The short way for most pairs of a scene. @return  false: it does not lead there
+    bool add_clear_block(const ElementPair& pair, Row& row) const {
+        constexpr std::size_t most = geometry::basis_size(geometry::max_degree);
+        std::array<double, most * most> memory;
+        const ElementShape &a = elements_[pair.i], &b = elements_[pair.j];
+        const std::span values(memory.data(), a.basis.size() * b.basis.size());
+        const auto error = kernel::clear_far_block(a, b, options_.tolerance, values);
+        if (error) add(pair, values, *error, row);
+        return error.has_value();
+    }
+
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
-        kernel::TransportOptions options = options_;
         const bool rides = carriers_[a.object.value].has_value();
-        options.occluders = rides ? visibility::Among::Moving : visibility::Among::Resting;
-        const kernel::TransportBlock block = kernel::transport(a, b, occluders_, options);
-        row.rays += block.rays;
-        if (block.values.empty()) return;
-        row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(block.error)});
-        for (const double value : block.values) row.values.push_back(static_cast<float>(value));
+        const Screened screened = screen_.look(pair.i, pair.j);
+        if (screened == Screened::Apart || (screened == Screened::Hidden && !rides)) return;
+        if (screened != Screened::Clear || rides || !add_clear_block(pair, row)) {
+            kernel::TransportOptions options = options_;
+            options.occluders = rides ? visibility::Among::Moving : visibility::Among::Resting;
+            options.occlusion = options_.occlusion && (rides || screened != Screened::Clear);
+            const kernel::TransportBlock block = kernel::transport(a, b, occluders_, options);
+            row.rays += block.rays;
+            if (block.values.empty()) return;
+            add(pair, block.values, block.error, row);
+        }
         if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
                 return geometry::may_pass_between(a, b, mover.centre, mover.radius);
             }))
@@ -151,6 +179,7 @@ private:
     const visibility::Occluders& occluders_;
     kernel::TransportOptions options_;
     std::vector<std::optional<MotionId>> carriers_;
+    PairScreen screen_;
     std::vector<Ball> movers_;
     bool grouped_ = false;
     std::vector<ElementPair> near_;
@@ -184,7 +213,7 @@ double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder
     std::vector<double> bytes(elements.size());
     core::parallel_for(elements.size(), [&](std::size_t i) {
         for (std::size_t j = i; j < elements.size(); ++j)
-            if (builder.at_rest(i, j) && kernel::may_exchange(elements[i], elements[j]))
+            if (builder.at_rest(i, j) && builder.may_exchange(i, j))
                 bytes[i] +=
                     static_cast<double>(elements[i].basis.size() * elements[j].basis.size() * sizeof(float) +
                                         sizeof(model::BlockEntry));

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "geometry/element_shape.h"
+
+namespace kinelux::kernel {
+
+/// The block of two flat elements, each wholly in front of the other, that are far enough apart for ready rules and have
+/// nothing between: what transport() makes of them, without its searches and its memory. On a plane cos(x, y) r is the
+/// other point's height over it, so that of a pair of nodes only r^4 is left to compute.
+/// @param tolerance  as TransportOptions::tolerance
+/// @param values     size(a) x size(b), row-major, overwritten where there is a result [1]
+/// @return  the estimated error of the values [1]; nothing where the pair is not of that kind
+std::optional<double> clear_far_block(const geometry::ElementShape& a, const geometry::ElementShape& b,
+                                      double tolerance, std::span<double> values);
+
+} // namespace kinelux::kernel
