@@ -149,8 +149,10 @@ private:
         std::array<double, most * most> memory;
         const ElementShape &a = elements_[pair.i], &b = elements_[pair.j];
         const std::span values(memory.data(), a.basis.size() * b.basis.size());
-        const auto error = kernel::clear_far_block(a, b, options_.tolerance, values);
-        if (error) add(pair, values, *error, row);
+        auto error = kernel::clear_far_block(a, b, options_.tolerance, values);
+        if (!error && values.size() == 1)
+            error = kernel::clear_near_block(a, b, options_.tolerance, values[0]);
+        if (error && (values.size() > 1 || values[0] > 0.0)) add(pair, values, *error, row);
         return error.has_value();
     }
 

@@ -110,6 +110,7 @@ bool PairScreen::may_exchange(std::size_t i, std::size_t j) const {
         const double over_a = glm::dot(a.normal, b.centre) - a.offset,
                      over_b = glm::dot(b.normal, a.centre) - b.offset;
         if (over_a <= -b.radius || over_b <= -a.radius) return false;
+        if (over_a > 2.0 * b.radius && over_b > 2.0 * a.radius) return true;
     }
     return kernel::may_exchange(elements_[i], elements_[j]);
 }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include "kernel/far_pair.h"
+#include "kernel/polygon_form_factor.h"
 
 namespace kinelux::kernel {
 
@@ -31,18 +33,18 @@ struct Nodes {
     }
 };
 
-// Of constant functions the block is one number.
+// Of constant functions the block is one number. Sums over y wait side by side, so that they share instructions.
 double constant_product(const Nodes& xs, std::size_t nx, const Nodes& ys, std::size_t ny) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < nx; ++i) {
-        double row = 0.0;
+    std::array<double, most_nodes> sums;
+    std::fill_n(sums.begin(), ny, 0.0);
+    for (std::size_t i = 0; i < nx; ++i)
         for (std::size_t j = 0; j < ny; ++j) {
             const double dx = ys.x[j] - xs.x[i], dy = ys.y[j] - xs.y[i], dz = ys.z[j] - xs.z[i];
             const double r2 = dx * dx + dy * dy + dz * dz;
-            row += ys.weight[j] / (r2 * r2);
+            sums[j] += xs.weight[i] / (r2 * r2);
         }
-        sum += xs.weight[i] * row;
-    }
+    double sum = 0.0;
+    for (std::size_t j = 0; j < ny; ++j) sum += ys.weight[j] * sums[j];
     return sum / std::numbers::pi;
 }
 
@@ -64,6 +66,21 @@ void basis_product(const Nodes& xs, const NodeSet& rule_x, std::size_t na, const
     }
 }
 
+// Whether no corner of an element lies behind a plane, and one clearly before it.
+bool stands_before(const ElementShape& element, const Vec3& normal, double offset) {
+    constexpr double behind = 1e-10, clearly = 1e-3; // of the element's radius
+    const double height = glm::dot(normal, element.centre) - offset;
+    if (height >= element.radius) return true;
+    if (height <= -element.radius) return false;
+    double lowest = 0.0, highest = 0.0;
+    for (const geometry::Facet& facet : element.facets)
+        for (const Vec3& corner : facet.corners) {
+            lowest = std::min(lowest, glm::dot(normal, corner) - offset);
+            highest = std::max(highest, glm::dot(normal, corner) - offset);
+        }
+    return lowest >= -behind * element.radius && highest > clearly * element.radius;
+}
+
 } // namespace
 
 std::optional<double> clear_far_block(const ElementShape& a, const ElementShape& b, double tolerance,
@@ -72,9 +89,7 @@ std::optional<double> clear_far_block(const ElementShape& a, const ElementShape&
     const Vec3 &normal_a = a.facets[0].normal, &normal_b = b.facets[0].normal;
     const double offset_a = glm::dot(normal_a, a.facets[0].corners[0]),
                  offset_b = glm::dot(normal_b, b.facets[0].corners[0]);
-    if (glm::dot(normal_a, b.centre) - offset_a < b.radius ||
-        glm::dot(normal_b, a.centre) - offset_b < a.radius)
-        return std::nullopt;
+    if (!stands_before(b, normal_a, offset_a) || !stands_before(a, normal_b, offset_b)) return std::nullopt;
     const auto rule = far_rule(a, b, tolerance);
     if (!rule) return std::nullopt;
     const NodeSet &rule_x = a.rules[rule->level_a], &rule_y = b.rules[rule->level_b];
@@ -90,6 +105,18 @@ std::optional<double> clear_far_block(const ElementShape& a, const ElementShape&
         basis_product(xs, rule_x, a.basis.size(), ys, rule_y, b.basis.size(), values);
     }
     return rule->error;
+}
+
+std::optional<double> clear_near_block(const ElementShape& a, const ElementShape& b, double tolerance,
+                                       double& value) {
+    constexpr double share = 0.3;      // of the tolerance; the other errors of a row are not foretold
+    constexpr double most_ratio = 1e3; // of sizes: rounding grows with it
+    if (!a.planar || !b.planar || a.basis.size() != 1 || b.basis.size() != 1) return std::nullopt;
+    if (std::max(a.radius, b.radius) > most_ratio * std::min(a.radius, b.radius)) return std::nullopt;
+    const PolygonFormFactor factor = polygon_form_factor(a.outline, b.outline, share * tolerance);
+    const double scale = std::sqrt(a.area / b.area);
+    value = scale * factor.value;
+    return scale * factor.error;
 }
 
 } // namespace kinelux::kernel

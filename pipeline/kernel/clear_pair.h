@@ -17,4 +17,9 @@ namespace kinelux::kernel {
 std::optional<double> clear_far_block(const geometry::ElementShape& a, const geometry::ElementShape& b,
                                       double tolerance, std::span<double> values);
 
+/// The same of two flat elements with constant functions that are close, touch, or cross each other's horizon: by the
+/// double contour integral. @param value  0 where they do not see each other [1]
+std::optional<double> clear_near_block(const geometry::ElementShape& a, const geometry::ElementShape& b,
+                                       double tolerance, double& value);
+
 } // namespace kinelux::kernel
