@@ -86,6 +86,7 @@ public:
           options_(options),
           carriers_(carriers(scene, plan)),
           screen_(elements, options.occlusion && !occluders.empty() ? &occluders.polygons() : nullptr) {
+        for (const ElementShape& element : elements) ends_.emplace_back(element);
         if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
     }
 
@@ -149,7 +150,7 @@ private:
         std::array<double, most * most> memory;
         const ElementShape &a = elements_[pair.i], &b = elements_[pair.j];
         const std::span values(memory.data(), a.basis.size() * b.basis.size());
-        auto error = kernel::clear_far_block(a, b, options_.tolerance, values);
+        auto error = kernel::clear_far_block(ends_[pair.i], ends_[pair.j], options_.tolerance, values);
         if (!error && values.size() == 1)
             error = kernel::clear_near_block(a, b, options_.tolerance, values[0]);
         if (error && (values.size() > 1 || values[0] > 0.0)) add(pair, values, *error, row);
@@ -182,6 +183,7 @@ private:
     kernel::TransportOptions options_;
     std::vector<std::optional<MotionId>> carriers_;
     PairScreen screen_;
+    std::vector<kernel::FlatEnd> ends_;
     std::vector<Ball> movers_;
     bool grouped_ = false;
     std::vector<ElementPair> near_;
@@ -297,9 +299,13 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
 
     result.layout = unknown_layout(rest_elements);
     result.degree = plan.degree;
-    std::size_t values = 0;
-    for (const Row& row : rows) values += row.values.size();
+    std::size_t values = 0, entries = 0;
+    for (const Row& row : rows) {
+        values += row.values.size();
+        entries += row.entries.size();
+    }
     result.static_blocks.values.reserve(values);
+    result.static_blocks.entries.reserve(entries);
     for (Row& row : rows) {
         const std::uint64_t base = result.static_blocks.values.size();
         for (model::BlockEntry entry : row.entries) {

@@ -16,35 +16,39 @@ namespace {
 using geometry::ElementShape;
 using geometry::NodeSet;
 
-constexpr std::size_t most_nodes = 64; ///< of a rule that is kept in registers and on the stack
+constexpr std::size_t most_nodes = 64;  ///< of a rule that is kept on the stack
+constexpr std::size_t side_by_side = 2; ///< numbers that share an instruction
 
 // Nodes of one end, each weighted by its height over the other end's plane.
 struct Nodes {
-    std::array<double, most_nodes> x, y, z, weight;
+    const double *x, *y, *z;
+    std::size_t count, stride;
+    std::array<double, most_nodes> weight;
 
-    void set(const NodeSet& rule, const Vec3& normal, double offset) {
-        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            const Vec3& p = rule.nodes[i].position;
-            x[i] = p.x;
-            y[i] = p.y;
-            z[i] = p.z;
-            weight[i] = rule.nodes[i].weight * (glm::dot(normal, p) - offset);
-        }
+    Nodes(const FlatEnd& end, std::size_t level, const Vec3& normal, double offset)
+        : x(&end.nodes[end.rules[level].start]),
+          y(x + end.rules[level].stride),
+          z(y + end.rules[level].stride),
+          count(end.rules[level].count),
+          stride(end.rules[level].stride) {
+        const double* area = z + stride;
+        for (std::size_t i = 0; i < stride; ++i)
+            weight[i] = area[i] * (normal.x * x[i] + normal.y * y[i] + normal.z * z[i] - offset);
     }
 };
 
 // Of constant functions the block is one number. Sums over y wait side by side, so that they share instructions.
-double constant_product(const Nodes& xs, std::size_t nx, const Nodes& ys, std::size_t ny) {
+double constant_product(const Nodes& xs, const Nodes& ys) {
     std::array<double, most_nodes> sums;
-    std::fill_n(sums.begin(), ny, 0.0);
-    for (std::size_t i = 0; i < nx; ++i)
-        for (std::size_t j = 0; j < ny; ++j) {
+    std::fill_n(sums.begin(), ys.stride, 0.0);
+    for (std::size_t i = 0; i < xs.count; ++i)
+        for (std::size_t j = 0; j < ys.stride; ++j) {
             const double dx = ys.x[j] - xs.x[i], dy = ys.y[j] - xs.y[i], dz = ys.z[j] - xs.z[i];
             const double r2 = dx * dx + dy * dy + dz * dz;
             sums[j] += xs.weight[i] / (r2 * r2);
         }
     double sum = 0.0;
-    for (std::size_t j = 0; j < ny; ++j) sum += ys.weight[j] * sums[j];
+    for (std::size_t j = 0; j < ys.count; ++j) sum += ys.weight[j] * sums[j];
     return sum / std::numbers::pi;
 }
 
@@ -83,26 +87,39 @@ bool stands_before(const ElementShape& element, const Vec3& normal, double offse
 
 } // namespace
 
-std::optional<double> clear_far_block(const ElementShape& a, const ElementShape& b, double tolerance,
+FlatEnd::FlatEnd(const ElementShape& element) : shape(&element), planar(element.planar) {
+    if (!planar) return;
+    normal = element.facets[0].normal;
+    offset = glm::dot(normal, element.facets[0].corners[0]);
+    for (std::size_t level = 0; level < rules.size(); ++level) {
+        const auto& list = element.rules[level].nodes;
+        Rule& rule = rules[level];
+        rule = {nodes.size(), list.size(), (list.size() + side_by_side - 1) / side_by_side * side_by_side};
+        nodes.resize(nodes.size() + 4 * rule.stride, 0.0);
+        for (std::size_t i = 0; i < rule.stride; ++i) {
+            const geometry::SurfaceNode& node = list[std::min(i, list.size() - 1)];
+            for (int axis = 0; axis < 3; ++axis)
+                nodes[rule.start + static_cast<std::size_t>(axis) * rule.stride + i] = node.position[axis];
+            if (i < list.size()) nodes[rule.start + 3 * rule.stride + i] = node.weight;
+        }
+    }
+}
+
+std::optional<double> clear_far_block(const FlatEnd& a, const FlatEnd& b, double tolerance,
                                       std::span<double> values) {
-    if (!a.planar || !b.planar) return std::nullopt;
-    const Vec3 &normal_a = a.facets[0].normal, &normal_b = b.facets[0].normal;
-    const double offset_a = glm::dot(normal_a, a.facets[0].corners[0]),
-                 offset_b = glm::dot(normal_b, b.facets[0].corners[0]);
-    if (!stands_before(b, normal_a, offset_a) || !stands_before(a, normal_b, offset_b)) return std::nullopt;
-    const auto rule = far_rule(a, b, tolerance);
-    if (!rule) return std::nullopt;
-    const NodeSet &rule_x = a.rules[rule->level_a], &rule_y = b.rules[rule->level_b];
-    const std::size_t nx = rule_x.nodes.size(), ny = rule_y.nodes.size();
-    if (nx > most_nodes || ny > most_nodes) return std::nullopt;
-    Nodes xs, ys;
-    xs.set(rule_x, normal_b, offset_b);
-    ys.set(rule_y, normal_a, offset_a);
+    if (!a.planar || !b.planar || !stands_before(*b.shape, a.normal, a.offset) ||
+        !stands_before(*a.shape, b.normal, b.offset))
+        return std::nullopt;
+    const auto rule = far_rule(*a.shape, *b.shape, tolerance);
+    if (!rule || a.rules[rule->level_a].stride > most_nodes || b.rules[rule->level_b].stride > most_nodes)
+        return std::nullopt;
+    const Nodes xs(a, rule->level_a, b.normal, b.offset), ys(b, rule->level_b, a.normal, a.offset);
     if (values.size() == 1) {
-        values[0] = rule_x.basis[0] * rule_y.basis[0] * constant_product(xs, nx, ys, ny);
+        values[0] = constant_product(xs, ys) / std::sqrt(a.shape->area * b.shape->area);
     } else {
         std::fill(values.begin(), values.end(), 0.0);
-        basis_product(xs, rule_x, a.basis.size(), ys, rule_y, b.basis.size(), values);
+        basis_product(xs, a.shape->rules[rule->level_a], a.shape->basis.size(), ys,
+                      b.shape->rules[rule->level_b], b.shape->basis.size(), values);
     }
     return rule->error;
 }
