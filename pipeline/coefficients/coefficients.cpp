@@ -84,18 +84,20 @@ public:
         : elements_(elements),
           occluders_(occluders),
           options_(options),
-          carriers_(carriers(scene, plan)),
           screen_(elements, options.occlusion && !occluders.empty() ? &occluders.polygons() : nullptr) {
-        for (const ElementShape& element : elements) ends_.emplace_back(element);
+        const auto carrier_of_object = carriers(scene, plan);
+        for (const ElementShape& element : elements) {
+            const std::optional<MotionId>& carrier = carrier_of_object[element.object.value];
+            carrier_of_.push_back(carrier ? carrier->value : resting);
+            ends_.emplace_back(element);
+        }
         if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
     }
 
-    bool at_rest(std::size_t i, std::size_t j) const {
-        return carriers_[elements_[i].object.value] == carriers_[elements_[j].object.value];
-    }
+    bool at_rest(std::size_t i, std::size_t j) const { return carrier_of_[i] == carrier_of_[j]; }
 
     bool may_exchange(std::size_t i, std::size_t j) const { return screen_.may_exchange(i, j); }
-    bool rides(std::size_t i) const { return carriers_[elements_[i].object.value].has_value(); }
+    bool rides(std::size_t i) const { return carrier_of_[i] != resting; }
     std::span<const Ball> movers() const { return movers_; }
     std::span<const ElementPair> near() const { return near_; }
 
@@ -160,7 +162,7 @@ private:
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
-        const bool rides = carriers_[a.object.value].has_value();
+        const bool rides = this->rides(pair.i);
         const Screened screened = screen_.look(pair.i, pair.j);
         if (screened == Screened::Apart || (screened == Screened::Hidden && !rides)) return;
         if (screened != Screened::Clear || rides || !add_clear_block(pair, row)) {
@@ -181,7 +183,8 @@ private:
     std::span<const ElementShape> elements_;
     const visibility::Occluders& occluders_;
     kernel::TransportOptions options_;
-    std::vector<std::optional<MotionId>> carriers_;
+    static constexpr std::uint32_t resting = ~std::uint32_t{0};
+    std::vector<std::uint32_t> carrier_of_; ///< of each element: its motion's number, or resting
     PairScreen screen_;
     std::vector<kernel::FlatEnd> ends_;
     std::vector<Ball> movers_;
@@ -213,7 +216,15 @@ void group_distant_pairs(std::span<const ElementShape> elements, const model::Sc
     builder.restrict_to(std::move(pairs.near));
 }
 
-double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder& builder) {
+// An upper bound: of all pairs while these fit the limit, else of those that may exchange light.
+double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder& builder, double limit_mib) {
+    constexpr double mib = 1024.0 * 1024.0;
+    double unknowns = 0.0;
+    for (const ElementShape& element : elements) unknowns += static_cast<double>(element.basis.size());
+    const auto count = static_cast<double>(elements.size());
+    const double all =
+        (unknowns * unknowns * sizeof(float) + count * count * sizeof(model::BlockEntry)) / mib;
+    if (all <= limit_mib) return all;
     std::vector<double> bytes(elements.size());
     core::parallel_for(elements.size(), [&](std::size_t i) {
         for (std::size_t j = i; j < elements.size(); ++j)
@@ -224,7 +235,7 @@ double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder
     });
     double sum = 0.0;
     for (const double row : bytes) sum += row;
-    return sum / (1024.0 * 1024.0);
+    return sum / mib;
 }
 
 // Memory of links and of the blocks that remain for near pairs at rest.
@@ -276,7 +287,7 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
                                          const kernel::TransportOptions& options, double memory_limit_mib,
                                          const GroupingOptions& grouping) {
     RowBuilder builder(rest_elements, scene, plan, occluders, options);
-    double needed_mib = memory_bound_mib(rest_elements, builder);
+    double needed_mib = memory_bound_mib(rest_elements, builder, memory_limit_mib);
     const bool large = rest_elements.size() > grouping.most_elements || needed_mib > memory_limit_mib;
     model::Coefficients result;
     if (grouping.use == Grouping::Always || (grouping.use == Grouping::Auto && large))
