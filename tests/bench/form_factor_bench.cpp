@@ -213,7 +213,7 @@ void run(const Case& item, const kernel::TransportOptions& options) {
 int main(int argc, char** argv) {
     using namespace kinelux;
     bool small = false;
-    kernel::TransportOptions options{.tolerance = 1e-4, .sight_tolerance = 1e-3};
+    kernel::TransportOptions options{.tolerance = 1e-3, .sight_tolerance = 1e-2};
     std::vector<std::string_view> names;
     for (int i = 1; i < argc; ++i) {
         const std::string_view argument = argv[i];
