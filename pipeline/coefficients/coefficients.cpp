@@ -2,6 +2,7 @@
 #include "coefficients/coefficients.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -12,10 +13,12 @@
 
 #include "coefficients/element_tree.h"
 #include "coefficients/links.h"
+#include "coefficients/pair_screen.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "geometry/pose.h"
+#include "kernel/clear_pair.h"
 
 namespace kinelux::coefficients {
 
@@ -78,15 +81,23 @@ class RowBuilder {
 public:
     RowBuilder(std::span<const ElementShape> elements, const model::Scene& scene, const model::Plan& plan,
                const visibility::Occluders& occluders, const kernel::TransportOptions& options)
-        : elements_(elements), occluders_(occluders), options_(options), carriers_(carriers(scene, plan)) {
+        : elements_(elements),
+          occluders_(occluders),
+          options_(options),
+          screen_(elements, options.occlusion && !occluders.empty() ? &occluders.polygons() : nullptr) {
+        const auto carrier_of_object = carriers(scene, plan);
+        for (const ElementShape& element : elements) {
+            const std::optional<MotionId>& carrier = carrier_of_object[element.object.value];
+            carrier_of_.push_back(carrier ? carrier->value : resting);
+            ends_.emplace_back(element);
+        }
         if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
     }
 
-    bool at_rest(std::size_t i, std::size_t j) const {
-        return carriers_[elements_[i].object.value] == carriers_[elements_[j].object.value];
-    }
+    bool at_rest(std::size_t i, std::size_t j) const { return carrier_of_[i] == carrier_of_[j]; }
 
-    bool rides(std::size_t i) const { return carriers_[elements_[i].object.value].has_value(); }
+    bool may_exchange(std::size_t i, std::size_t j) const { return screen_.may_exchange(i, j); }
+    bool rides(std::size_t i) const { return carrier_of_[i] != resting; }
     std::span<const Ball> movers() const { return movers_; }
     std::span<const ElementPair> near() const { return near_; }
 
@@ -130,17 +141,39 @@ private:
         return result;
     }
 
+    static void add(const ElementPair& pair, std::span<const double> values, double error, Row& row) {
+        row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(error)});
+        for (const double value : values) row.values.push_back(static_cast<float>(value));
+    }
+
+    // The short way for most pairs of a scene. @return  false: it does not lead there
+    bool add_clear_block(const ElementPair& pair, Row& row) const {
+        constexpr std::size_t most = geometry::basis_size(geometry::max_degree);
+        std::array<double, most * most> memory;
+        const ElementShape &a = elements_[pair.i], &b = elements_[pair.j];
+        const std::span values(memory.data(), a.basis.size() * b.basis.size());
+        auto error = kernel::clear_far_block(ends_[pair.i], ends_[pair.j], options_.tolerance, values);
+        if (!error && values.size() == 1)
+            error = kernel::clear_near_block(a, b, options_.tolerance, values[0]);
+        if (error && (values.size() > 1 || values[0] > 0.0)) add(pair, values, *error, row);
+        return error.has_value();
+    }
+
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
-        kernel::TransportOptions options = options_;
-        const bool rides = carriers_[a.object.value].has_value();
-        options.occluders = rides ? visibility::Among::Moving : visibility::Among::Resting;
-        const kernel::TransportBlock block = kernel::transport(a, b, occluders_, options);
-        row.rays += block.rays;
-        if (block.values.empty()) return;
-        row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(block.error)});
-        for (const double value : block.values) row.values.push_back(static_cast<float>(value));
+        const bool rides = this->rides(pair.i);
+        const Screened screened = screen_.look(pair.i, pair.j);
+        if (screened == Screened::Apart || (screened == Screened::Hidden && !rides)) return;
+        if (screened != Screened::Clear || rides || !add_clear_block(pair, row)) {
+            kernel::TransportOptions options = options_;
+            options.occluders = rides ? visibility::Among::Moving : visibility::Among::Resting;
+            options.occlusion = options_.occlusion && (rides || screened != Screened::Clear);
+            const kernel::TransportBlock block = kernel::transport(a, b, occluders_, options);
+            row.rays += block.rays;
+            if (block.values.empty()) return;
+            add(pair, block.values, block.error, row);
+        }
         if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
                 return geometry::may_pass_between(a, b, mover.centre, mover.radius);
             }))
@@ -150,7 +183,10 @@ private:
     std::span<const ElementShape> elements_;
     const visibility::Occluders& occluders_;
     kernel::TransportOptions options_;
-    std::vector<std::optional<MotionId>> carriers_;
+    static constexpr std::uint32_t resting = ~std::uint32_t{0};
+    std::vector<std::uint32_t> carrier_of_; ///< of each element: its motion's number, or resting
+    PairScreen screen_;
+    std::vector<kernel::FlatEnd> ends_;
     std::vector<Ball> movers_;
     bool grouped_ = false;
     std::vector<ElementPair> near_;
@@ -180,18 +216,26 @@ void group_distant_pairs(std::span<const ElementShape> elements, const model::Sc
     builder.restrict_to(std::move(pairs.near));
 }
 
-double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder& builder) {
+// An upper bound: of all pairs while these fit the limit, else of those that may exchange light.
+double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder& builder, double limit_mib) {
+    constexpr double mib = 1024.0 * 1024.0;
+    double unknowns = 0.0;
+    for (const ElementShape& element : elements) unknowns += static_cast<double>(element.basis.size());
+    const auto count = static_cast<double>(elements.size());
+    const double all =
+        (unknowns * unknowns * sizeof(float) + count * count * sizeof(model::BlockEntry)) / mib;
+    if (all <= limit_mib) return all;
     std::vector<double> bytes(elements.size());
     core::parallel_for(elements.size(), [&](std::size_t i) {
         for (std::size_t j = i; j < elements.size(); ++j)
-            if (builder.at_rest(i, j) && kernel::may_exchange(elements[i], elements[j]))
+            if (builder.at_rest(i, j) && builder.may_exchange(i, j))
                 bytes[i] +=
                     static_cast<double>(elements[i].basis.size() * elements[j].basis.size() * sizeof(float) +
                                         sizeof(model::BlockEntry));
     });
     double sum = 0.0;
     for (const double row : bytes) sum += row;
-    return sum / (1024.0 * 1024.0);
+    return sum / mib;
 }
 
 // Memory of links and of the blocks that remain for near pairs at rest.
@@ -256,7 +300,7 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
                                          const kernel::TransportOptions& options, double memory_limit_mib,
                                          const GroupingOptions& grouping) {
     RowBuilder builder(rest_elements, scene, plan, occluders, options);
-    double needed_mib = memory_bound_mib(rest_elements, builder);
+    double needed_mib = memory_bound_mib(rest_elements, builder, memory_limit_mib);
     const bool large = rest_elements.size() > grouping.most_elements || needed_mib > memory_limit_mib;
     model::Coefficients result;
     if (grouping.use == Grouping::Always || (grouping.use == Grouping::Auto && large))
@@ -279,9 +323,13 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
 
     result.layout = unknown_layout(rest_elements);
     result.degree = plan.degree;
-    std::size_t values = 0;
-    for (const Row& row : rows) values += row.values.size();
+    std::size_t values = 0, entries = 0;
+    for (const Row& row : rows) {
+        values += row.values.size();
+        entries += row.entries.size();
+    }
     result.static_blocks.values.reserve(values);
+    result.static_blocks.entries.reserve(entries);
     for (Row& row : rows) {
         const std::uint64_t base = result.static_blocks.values.size();
         for (model::BlockEntry entry : row.entries) {

@@ -21,7 +21,9 @@ double ratio(double radius, double distance, double other_radius) {
 }
 
 double remainder(const NodeSet& rule, int degree, double ratio) {
-    return std::pow(ratio, rule.exactness + 1 - degree);
+    double power = 1.0;
+    for (int k = degree; k <= rule.exactness; ++k) power *= ratio;
+    return power;
 }
 
 } // namespace

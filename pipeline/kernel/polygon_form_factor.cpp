@@ -22,7 +22,9 @@ constexpr double plane_rounding = 1e-14; ///< of the polygons' coordinates: less
 constexpr double far_ratio = 3.0;        ///< distance / size from which the Gauss product is used
 constexpr int far_nodes = 10, far_coarse_nodes = 8;
 constexpr int panel_nodes = 14, panel_coarse_nodes = 10;
-constexpr double panel_ratio = 2.0;      ///< length of a panel / distance to the nearest branch point
+constexpr double finest_tolerance =
+    1e-9;                           ///< of fewer nodes than those; their error is not measured but foretold
+constexpr double panel_ratio = 2.0; ///< length of a panel / distance to the nearest branch point
 constexpr double smallest_panel = 1e-14; ///< of the edge: there s ln s has nothing left to give
 constexpr double rounding_steps = 4.0;   ///< machine epsilons by which one term of a sum may be off
 
@@ -86,6 +88,27 @@ Ball ball_about(std::span<const Loop> loops) {
     return {0.5 * (low + high), 0.5 * glm::distance(low, high)};
 }
 
+// Gauss nodes of the rule that counts and of the one that tells its error; 0: none does.
+struct Rule {
+    int fine, coarse;
+};
+
+Rule panel_rule(double tolerance) {
+    // On a panel twice as long as the distance of the nearest branch point errors fall by (1 + sqrt 2)^2 per node; the
+    // contours cancel by up to the square of far_ratio and what it is counted in.
+    constexpr double amplitude = 30.0, fall = 5.83;
+    if (tolerance < finest_tolerance) return {panel_nodes, panel_coarse_nodes};
+    return {std::clamp(static_cast<int>(std::ceil(std::log(amplitude / tolerance) / std::log(fall))), 3,
+                       panel_nodes),
+            0};
+}
+
+Rule far_rule_nodes(double tolerance) {
+    // From the bounds' distance on, errors fall by more than a hundred per node.
+    if (tolerance < finest_tolerance) return {far_nodes, far_coarse_nodes};
+    return {tolerance < 1e-5 ? 5 : 4, 0};
+}
+
 // A sum with the sum of its terms' sizes, which bounds its rounding.
 struct Sum {
     double value = 0.0, size = 0.0;
@@ -143,10 +166,11 @@ BranchPoint branch_at_crossing(const Edge& edge, const Edge& other) {
 // integral integral ln(r / scale) over two edges, with two Gauss rules on the same panels.
 class EdgePair {
 public:
-    EdgePair(const Edge& outer, const Edge& inner, double scale)
+    EdgePair(const Edge& outer, const Edge& inner, double scale, const Rule& rule)
         : outer_(outer),
           inner_(inner),
           scale_(scale),
+          rule_(rule),
           branches_{branch_at(outer, inner.from),
                     branch_at(outer, inner.from + inner.length * inner.direction),
                     branch_at_crossing(outer, inner)} {}
@@ -171,8 +195,8 @@ private:
             add_panel(middle, high, fine, coarse);
             return;
         }
-        add_rule(panel_nodes, low, length, fine);
-        add_rule(panel_coarse_nodes, low, length, coarse);
+        add_rule(rule_.fine, low, length, fine);
+        if (rule_.coarse > 0) add_rule(rule_.coarse, low, length, coarse);
     }
 
     void add_rule(int nodes, double low, double length, Sum& sum) const {
@@ -190,18 +214,22 @@ private:
     const Edge& outer_;
     const Edge& inner_;
     double scale_;
+    Rule rule_;
     std::array<BranchPoint, 3> branches_;
 };
 
-PolygonFormFactor by_contours(std::span<const Loop> a, std::span<const Loop> b, double scale) {
+PolygonFormFactor by_contours(std::span<const Loop> a, std::span<const Loop> b, double scale,
+                              double tolerance) {
+    const Rule rule = panel_rule(tolerance);
     Sum fine, coarse;
     const std::vector<Edge> edges_a = edges_of(a), edges_b = edges_of(b);
     for (const Edge& outer : edges_a)
         for (const Edge& inner : edges_b)
             if (glm::dot(outer.direction, inner.direction) != 0.0)
-                EdgePair(outer, inner, scale).add_to(fine, coarse);
+                EdgePair(outer, inner, scale, rule).add_to(fine, coarse);
     constexpr double turn = 2.0 * std::numbers::pi;
-    return {fine.value / turn, (std::abs(fine.value - coarse.value) + fine.rounding()) / turn};
+    const double change = rule.coarse > 0 ? std::abs(fine.value - coarse.value) : tolerance * fine.value;
+    return {fine.value / turn, (change + fine.rounding()) / turn};
 }
 
 struct AreaNode {
@@ -245,7 +273,7 @@ Sum product(std::span<const Loop> a, const Vec3& normal_a, std::span<const Loop>
 } // namespace
 
 PolygonFormFactor polygon_form_factor(std::span<const std::vector<Vec3>> from,
-                                      std::span<const std::vector<Vec3>> to) {
+                                      std::span<const std::vector<Vec3>> to, double tolerance) {
     const Ball whole_a = ball_about(from), whole_b = ball_about(to);
     const double coordinates =
         std::max({glm::length(whole_a.centre), glm::length(whole_b.centre), whole_a.radius, whole_b.radius});
@@ -258,12 +286,16 @@ PolygonFormFactor polygon_form_factor(std::span<const std::vector<Vec3>> from,
     const double distance = glm::distance(ball_a.centre, ball_b.centre) - ball_a.radius - ball_b.radius;
     PolygonFormFactor result;
     if (distance > far_ratio * 2.0 * std::max(ball_a.radius, ball_b.radius)) {
-        const Sum fine = product(a, plane_a->normal, b, plane_b->normal, far_nodes);
-        const Sum coarse = product(a, plane_a->normal, b, plane_b->normal, far_coarse_nodes);
-        result = {fine.value, std::abs(fine.value - coarse.value) + fine.rounding()};
+        const Rule rule = far_rule_nodes(tolerance);
+        const Sum fine = product(a, plane_a->normal, b, plane_b->normal, rule.fine);
+        const double change =
+            rule.coarse > 0
+                ? std::abs(fine.value - product(a, plane_a->normal, b, plane_b->normal, rule.coarse).value)
+                : tolerance * fine.value;
+        result = {fine.value, change + fine.rounding()};
     } else {
-        result =
-            by_contours(a, b, glm::distance(ball_a.centre, ball_b.centre) + ball_a.radius + ball_b.radius);
+        result = by_contours(
+            a, b, glm::distance(ball_a.centre, ball_b.centre) + ball_a.radius + ball_b.radius, tolerance);
     }
     const double area = 0.5 * glm::length(area_vector(from));
     return {std::max(0.0, result.value / area), result.error / area};

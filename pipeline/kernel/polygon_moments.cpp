@@ -173,6 +173,24 @@ Moments shifted(const Moments& moments, const Vec2& foot, std::size_t degree) {
     return result;
 }
 
+// The moment of 1 by Lambert's formula: per edge the angle it subtends times the cosine between the normal and the plane
+// through edge and point.
+double constant_moment(const Vec3& normal, double h, const Vec2& foot, const visibility::Loops2& loops) {
+    double sum = 0.0;
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        const std::span<const Vec2> loop = loops[l];
+        Vec3 a(loop.back() - foot, -h);
+        for (const Vec2& corner : loop) {
+            const Vec3 b(corner - foot, -h);
+            const Vec3 cross = glm::cross(b, a);
+            const double sine = glm::length(cross);
+            if (sine > 0.0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, cross) / sine;
+            a = b;
+        }
+    }
+    return 0.5 * sum;
+}
+
 } // namespace
 
 PolygonMoments::PolygonMoments(const geometry::Facet& facet, const geometry::Basis& basis)
@@ -206,6 +224,12 @@ void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility:
     const double h = glm::dot(front_, x - origin_);
     if (!(h > 0.0)) return;
     const Vec2 foot = to_plane(x);
+    constexpr double closed_form = 1e-9; // its terms cancel where the polygon looks small
+    if (degree_ == 0 && tolerance >= closed_form) {
+        const Vec3 in_plane(glm::dot(normal, axis_u_), glm::dot(normal, axis_v_), glm::dot(normal, front_));
+        values[0] = monomials_[0] * constant_moment(in_plane, h, foot, loops) / std::numbers::pi;
+        return;
+    }
     const Vec2 scaled_foot = scaled_origin_ + foot.x * scaled_u_ + foot.y * scaled_v_;
     // Moments about a foot far outside the domain cancel when they are taken about its centre.
     const double cancellation =

@@ -25,6 +25,13 @@ using visibility::Loops2;
 using visibility::Loops3;
 using visibility::Sight;
 
+// What keeps its memory from pair to pair; one per thread, as no pair is computed within another.
+template <class Workspace>
+Workspace& kept() {
+    thread_local Workspace workspace;
+    return workspace;
+}
+
 double frobenius_norm(std::span<const double> values) {
     double sum = 0.0;
     for (const double value : values) sum += value * value;
@@ -177,7 +184,7 @@ private:
     Vec3 normal_;
     std::span<const visibility::PlanarBlocker> blockers_;
     double tolerance_;
-    visibility::VisiblePolygon visible_;
+    visibility::VisiblePolygon& visible_ = kept<visibility::VisiblePolygon>();
     Loops2 flat_;
 };
 
@@ -434,7 +441,7 @@ private:
     const ElementShape& b_;
     const visibility::Occluders& occluders_;
     const TransportOptions& options_;
-    visibility::PairBlockers blockers_;
+    visibility::PairBlockers& blockers_ = kept<visibility::PairBlockers>();
     TransportBlock block_;
 };
 

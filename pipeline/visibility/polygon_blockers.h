@@ -39,6 +39,7 @@ public:
     void set_poses(std::span<const geometry::Pose> poses);
 
     std::size_t size() const { return resting_.polygons.size() + moving_.polygons.size(); }
+    std::size_t resting() const { return resting_.polygons.size(); } ///< of size(), the first ones
     const PolygonBlocker& operator[](std::uint32_t polygon) const;
     std::span<const Vec3> loop_of(std::uint32_t polygon, std::size_t loop) const; ///< outer ones first
     /// Convex polygons without overlap that make up one that is not convex itself; none for a convex one.

@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "coefficients/coefficients.h"
+#include "kernel/clear_pair.h"
 #include "kernel/transport.h"
 #include "solve/transport_operator.h"
 #include "support/shapes.h"
@@ -25,6 +26,53 @@ void transport_of(benchmark::State& state, const model::PatchSet& set) {
         benchmark::DoNotOptimize(kernel::transport(shapes[0], shapes[1], occluders, {.occlusion = false}));
     state.SetItemsProcessed(state.iterations());
 }
+
+// Two squares at gap 1.5 with a pane at half height over a share of the way between them; 1 hides all.
+void behind_pane(benchmark::State& state, double share, bool exact_sight) {
+    const auto pair = pair_of_squares(1.5, false);
+    model::PatchSet all = pair;
+    all.patches.push_back(
+        support::rectangle(Vec3(-1.0, -1.0, 0.75), Vec3(1.0 + 2.0 * share, 0, 0), Vec3(0, 3, 0)));
+    const auto shapes = support::shapes_of(pair, 1, static_cast<int>(state.range(0)));
+    const auto occluders = support::occluders_of(all, support::plain_scene(1));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            kernel::transport(shapes[0], shapes[1], occluders, {.exact_sight = exact_sight}));
+    state.SetItemsProcessed(state.iterations());
+}
+
+// The short way that most pairs of a scene take.
+void far_clear_pair(benchmark::State& state) {
+    const auto shapes = support::shapes_of(pair_of_squares(6.0, false), 1, static_cast<int>(state.range(0)));
+    const kernel::FlatEnd a(shapes[0]), b(shapes[1]);
+    std::vector<double> values(shapes[0].basis.size() * shapes[1].basis.size());
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(kernel::clear_far_block(a, b, 1e-3, values));
+        benchmark::DoNotOptimize(values.data());
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+void near_clear_pair(benchmark::State& state, const model::PatchSet& set) {
+    const auto shapes = support::shapes_of(set, 1, 0);
+    double value = 0.0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(kernel::clear_near_block(shapes[0], shapes[1], 1e-3, value));
+        benchmark::DoNotOptimize(value);
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+void facing_clear_pair(benchmark::State& state) { near_clear_pair(state, pair_of_squares(0.1, false)); }
+void hinged_clear_pair(benchmark::State& state) { near_clear_pair(state, pair_of_squares(0.0, true)); }
+BENCHMARK(far_clear_pair)->DenseRange(0, 3);
+BENCHMARK(facing_clear_pair);
+BENCHMARK(hinged_clear_pair);
+
+void hidden_pair(benchmark::State& state) { behind_pane(state, 1.0, true); }
+void partly_hidden_pair(benchmark::State& state) { behind_pane(state, 0.3, true); }
+void sampled_pair(benchmark::State& state) { behind_pane(state, 0.3, false); }
+BENCHMARK(hidden_pair)->DenseRange(0, 3);
+BENCHMARK(partly_hidden_pair)->DenseRange(0, 3);
+BENCHMARK(sampled_pair)->DenseRange(0, 3);
 
 void far_pair(benchmark::State& state) { transport_of(state, pair_of_squares(6.0, false)); }
 void middle_pair(benchmark::State& state) { transport_of(state, pair_of_squares(1.5, false)); }

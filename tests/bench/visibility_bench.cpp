@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -153,6 +154,48 @@ public:
         }
         state.SetItemsProcessed(static_cast<std::int64_t>(rays_per_batch) * state.iterations());
     }
+    // The same rays through both in turn: how much of Embree's own speed is left, one by one and in batches.
+    void compare(benchmark::State& state, const World& world) const {
+        std::array<std::clock_t, 4> spent{};
+        const auto timed = [&spent](std::size_t which, const auto& work) {
+            const std::clock_t start = std::clock();
+            work();
+            spent[which] += std::clock() - start;
+        };
+        const auto batches = batches_of(world);
+        std::vector<std::uint8_t> blocked(rays_per_batch);
+        RTCIntersectContext context;
+        for (auto _ : state) {
+            timed(0, [&] {
+                for (const visibility::Segment& s : world.segments)
+                    benchmark::DoNotOptimize(world.occluders.occluded(s.from, s.to));
+            });
+            timed(1, [&] {
+                for (RTCRay ray : rays_) {
+                    rtcInitIntersectContext(&context);
+                    rtcOccluded1(scene_, &context, &ray);
+                    benchmark::DoNotOptimize(ray.tfar);
+                }
+            });
+            timed(2, [&] {
+                for (const auto& batch : batches) world.occluders.occluded(batch, blocked);
+            });
+            timed(3, [&] {
+                std::vector<RTCRay> rays = batched_rays_;
+                for (std::size_t k = 0; k < rays.size(); k += rays_per_batch) {
+                    rtcInitIntersectContext(&context);
+                    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+                    rtcOccluded1M(scene_, &context, &rays[k], rays_per_batch, sizeof(RTCRay));
+                }
+            });
+        }
+        const auto ratio = [&spent](std::size_t ours, std::size_t bare) {
+            return static_cast<double>(spent[bare]) /
+                   static_cast<double>(std::max<std::clock_t>(spent[ours], 1));
+        };
+        state.counters["one_by_one"] = ratio(0, 1);
+        state.counters["batches"] = ratio(2, 3);
+    }
     void run(benchmark::State& state) const {
         std::size_t k = 0;
         for (auto _ : state) {
@@ -296,6 +339,10 @@ void register_world(const std::string& name, World&& made) {
     add("batches_of_rays", batches_of_rays);
     benchmark::RegisterBenchmark((name + "/batches_of_rays_bare_embree").c_str(),
                                  [&bare](benchmark::State& state) { bare.run_batches(state); });
+    benchmark::RegisterBenchmark((name + "/share_of_bare_embree").c_str(), [&bare, &world = world](
+                                                                               benchmark::State& state) {
+        bare.compare(state, world);
+    })->Unit(benchmark::kMillisecond);
     add("shafts", shafts);
     add("box_tests", box_tests);
     add("candidates", candidates);
