@@ -200,11 +200,11 @@ void PolygonMoments::to_plane(const visibility::Loops3& loops, visibility::Loops
     flat.ends = loops.ends;
 }
 
-void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops,
+double PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops,
                             double tolerance, std::span<double> values) const {
     std::fill(values.begin(), values.end(), 0.0);
     const double h = glm::dot(front_, x - origin_);
-    if (!(h > 0.0)) return;
+    if (!(h > 0.0)) return 0.0;
     const Vec2 foot = to_plane(x);
     const Vec2 scaled_foot = scaled_origin_ + foot.x * scaled_u_ + foot.y * scaled_v_;
     // Moments about a foot far outside the domain cancel when they are taken about its centre.
@@ -219,10 +219,14 @@ void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility:
                                     static_cast<std::size_t>(degree_),
                                     std::max(tolerance / cancellation, finest)};
     Moments moments{};
+    double turnover = 0.0;
     for (std::size_t l = 0; l < loops.size(); ++l) {
         const std::span<const Vec2> loop = loops[l];
-        for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++)
+        for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+            const double before = moments[0];
             integrator.add(loop[j] - foot, loop[i] - foot, moments);
+            turnover += std::abs(moments[0] - before);
+        }
     }
     moments = shifted(moments, scaled_foot, static_cast<std::size_t>(degree_));
     for (std::size_t l = 0; l < values.size(); ++l) {
@@ -230,6 +234,7 @@ void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility:
         for (std::size_t m = 0; m < values.size(); ++m) sum += monomials_[l * values.size() + m] * moments[m];
         values[l] = sum / std::numbers::pi;
     }
+    return turnover / std::numbers::pi;
 }
 
 } // namespace kinelux::kernel

@@ -31,9 +31,10 @@ public:
     /// @param normal  the point's, unit
     /// @param loops   boundaries of the polygon in the plane's coordinates; none of it may lie below the point's
     ///                horizon
-    /// @param tolerance  relative to the moment of the constant [1], 1e-14..0.1
+    /// @param tolerance  relative to the edges' contributions [1], 1e-14..0.1
     /// @param values  basis size, overwritten
-    void gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
+    /// @return  sum of what the edges contribute to the moment of the constant, each without its sign [1]
+    double gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
                 std::span<double> values) const;
 
 private:

@@ -147,13 +147,43 @@ public:
         moments_.to_plane(loops, flat_);
     }
     void gather(const SurfaceNode& x, std::span<double> values) override {
-        moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+        const double turnover = moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+        turnover2_ += turnover * turnover;
+        ++gathered_;
+    }
+
+    /// What an edge's contribution may be off, far more than the polygon's integral where contributions cancel.
+    /// @return  of a block over the outer element [1]
+    double error(const ElementShape& outer, const ElementShape& inner) const {
+        if (gathered_ == 0) return 0.0;
+        const double functions = static_cast<double>(inner.basis.size());
+        return tolerance_ * std::sqrt(turnover2_ / gathered_ * functions * outer.area / inner.area);
+    }
+
+    /// Gathers at a few points of the outer element, and asks for more of the edges where they cancel.
+    /// @param allowed  error of a block, relative to its norm or `floor`
+    void tighten(const ElementShape& outer, const ElementShape& inner, double allowed, double floor) {
+        constexpr std::size_t probes = 4;
+        constexpr double finest = 1e-14;
+        const NodeSet& xs = outer.rules[0];
+        std::vector<double> values(inner.basis.size());
+        double sum2 = 0.0;
+        const std::size_t count = std::min(probes, xs.nodes.size());
+        for (std::size_t k = 0; k < count; ++k) {
+            gather(xs.nodes[k * xs.nodes.size() / count], values);
+            for (const double value : values) sum2 += value * value;
+        }
+        const double norm = std::sqrt(outer.area * sum2 / static_cast<double>(count));
+        const double excess = error(outer, inner) / (allowed * std::max(norm, floor));
+        if (excess > 1.0) tolerance_ = std::max(tolerance_ / excess, finest);
+        turnover2_ = gathered_ = 0.0;
     }
 
 private:
     PolygonMoments moments_;
     Loops2 flat_;
     double tolerance_;
+    double turnover2_ = 0.0, gathered_ = 0.0; ///< sums over points
 };
 
 // A few polygons stand before it.
@@ -371,7 +401,9 @@ private:
         OuterResult result;
         if (sight == Sight::Clear) {
             WholePolygon gather(inner, loops, gather_tolerance);
+            gather.tighten(outer, inner, gather_tolerance, outer_options.floor);
             result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
+            result.error += gather.error(outer, inner);
         } else if (sight == Sight::Few && options_.exact_sight) {
             outer_options.tolerance = options_.sight_tolerance;
             outer_options.refine = true;
@@ -383,6 +415,7 @@ private:
         } else {
             Rays rays(occluders_, options_, true);
             outer_options.tolerance = std::max(options_.tolerance, sampled_tolerance);
+            outer_options.settle = false;
             SampledPolygon gather(inner, loops, rays, gather_tolerance);
             constexpr std::size_t many_pieces = 16;
             result = pieces.size() > many_pieces
