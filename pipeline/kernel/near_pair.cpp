@@ -20,6 +20,9 @@ using geometry::Facet;
 using geometry::SurfaceNode;
 
 constexpr int most_nodes = 12;
+// Symmetric elements make equal candidates: the first is taken unless another is better by more than rounding, so that
+// an element's place does not choose.
+constexpr double clearly = 1.0 + 1e-6;
 
 // A bilinear quadrilateral in a facet's barycentric coordinates: s runs from the edge 0-1 to the edge 3-2, t along them.
 // A triangle has 2 = 3. Each direction has its Gauss rule, its error, and where it is divided.
@@ -38,7 +41,7 @@ struct Cell {
     const Facet* facet;
     std::array<Vec2, 4> corners;
     Direction s, t;
-    double wanted = 0.0; ///< foretold error that will do [1]
+    double wanted = 0.0; ///< foretold error x area that will do [m2]
     std::vector<double> values;
 
     double error() const { return s.error() + t.error(); }
@@ -143,7 +146,7 @@ private:
         const std::complex<double> x = 2.0 * z - 1.0;
         const std::complex<double> root = std::sqrt(x * x - 1.0);
         const double rate = std::max(std::abs(x + root), std::abs(x - root));
-        if (rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
+        if (clearly * rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
     }
 
     const InnerPolygon& polygon_;
@@ -167,7 +170,7 @@ public:
         for (const OuterPiece& piece : pieces) append_cells(piece, first);
         double total_area = 0.0;
         for (const Cell& cell : first) total_area += area_of(cell);
-        for (Cell& cell : first) cell.wanted = plan_share * options_.tolerance * total_area / area_of(cell);
+        for (Cell& cell : first) cell.wanted = plan_share * options_.tolerance * total_area;
         cells_ = options_.polygon != nullptr ? planned(std::move(first)) : std::move(first);
         for (Cell& cell : cells_) {
             if (options_.refine) ask_for_measuring(cell);
@@ -237,7 +240,7 @@ private:
                 result.push_back(std::move(cell));
                 continue;
             }
-            for (Cell& part : parts(cell, cell.s.foretold >= cell.t.foretold)) waiting.push_back(std::move(part));
+            for (Cell& part : parts(cell, cell.t.foretold <= clearly * cell.s.foretold)) waiting.push_back(std::move(part));
         }
         return result;
     }
@@ -247,7 +250,7 @@ private:
         const auto corners =
             divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division);
         std::array<Cell, 2> result{Cell{cell.facet, corners[0]}, Cell{cell.facet, corners[1]}};
-        for (Cell& part : result) part.wanted = cell.wanted * area_of(cell) / area_of(part);
+        for (Cell& part : result) part.wanted = cell.wanted;
         return result;
     }
 
@@ -266,8 +269,9 @@ private:
                                               position(cell.facet, 0.5 * (c[2] + c[3])));
         const double t_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[3])),
                                               position(cell.facet, 0.5 * (c[1] + c[2])));
-        const bool s_resolved = choose(s, cell.wanted, s_length, cell.s);
-        const bool t_resolved = choose(t, cell.wanted, t_length, cell.t);
+        const double wanted = cell.wanted / std::max(area_of(cell), std::numeric_limits<double>::min());
+        const bool s_resolved = choose(s, wanted, s_length, cell.s);
+        const bool t_resolved = choose(t, wanted, t_length, cell.t);
         return s_resolved && t_resolved;
     }
 
@@ -310,6 +314,7 @@ private:
             if (left <= allowed) return;
             std::size_t count = 0;
             while (count < cells_.size() && left > 0.5 * allowed) left -= cells_[count++].error();
+            while (count < cells_.size() && clearly * cells_[count].error() > cells_[count - 1].error()) ++count;
             std::vector<Cell> again;
             for (std::size_t c = 0; c < count; ++c)
                 improve(cells_[c], 0.5 * allowed / static_cast<double>(count), again);
@@ -329,14 +334,14 @@ private:
             direction.nodes += static_cast<int>(more);
             return true;
         };
-        const bool across_s = cell.s.error() >= cell.t.error();
+        const bool across_s = cell.t.error() <= clearly * cell.s.error();
         if (enough(across_s ? cell.s : cell.t)) {
             Direction& other = across_s ? cell.t : cell.s;
             if (!enough(other)) other.nodes = most_planned_nodes;
             result.push_back(std::move(cell));
             return;
         }
-        cell.wanted = wanted / std::max(std::sqrt(norm2(cell.values)), std::numeric_limits<double>::min());
+        cell.wanted = area_of(cell) * wanted / std::sqrt(norm2(cell.values));
         std::vector<Cell> both;
         for (Cell& part : parts(cell, across_s)) both.push_back(std::move(part));
         for (Cell& part : planned(std::move(both))) result.push_back(std::move(part));
@@ -480,7 +485,7 @@ private:
     }
 
     static constexpr int most_planned_nodes = 8;
-    static constexpr double plan_share = 10.0; ///< of the tolerance, for what a first plan foretells
+    static constexpr double plan_share = 3.0; ///< of the tolerance, for what a first plan foretells
     static constexpr std::size_t most_planned = 4000;
 
     const ElementShape& element_;

@@ -234,7 +234,8 @@ double PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibilit
         for (std::size_t m = 0; m < values.size(); ++m) sum += monomials_[l * values.size() + m] * moments[m];
         values[l] = sum / std::numbers::pi;
     }
-    return turnover / std::numbers::pi;
+    const double rounding = std::numeric_limits<double>::epsilon() * cancellation;
+    return std::max(tolerance, rounding) * turnover / std::numbers::pi;
 }
 
 } // namespace kinelux::kernel

@@ -33,7 +33,8 @@ public:
     ///                horizon
     /// @param tolerance  relative to the edges' contributions [1], 1e-14..0.1
     /// @param values  basis size, overwritten
-    /// @return  sum of what the edges contribute to the moment of the constant, each without its sign [1]
+    /// @return  what values_0 may be off, over the function's value: the tolerance, or rounding, of the sum of what the
+    ///          edges contribute, each without its sign [1]
     double gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
                 std::span<double> values) const;
 

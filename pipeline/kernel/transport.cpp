@@ -147,17 +147,16 @@ public:
         moments_.to_plane(loops, flat_);
     }
     void gather(const SurfaceNode& x, std::span<double> values) override {
-        const double turnover = moments_.gather(x.position, x.normal, flat_, tolerance_, values);
-        turnover2_ += turnover * turnover;
+        const double uncertainty = moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+        uncertainty2_ += uncertainty * uncertainty;
         ++gathered_;
     }
 
-    /// What an edge's contribution may be off, far more than the polygon's integral where contributions cancel.
-    /// @return  of a block over the outer element [1]
+    /// Frobenius norm of what the inner integrals may be off in a block over the outer element [1].
     double error(const ElementShape& outer, const ElementShape& inner) const {
         if (gathered_ == 0) return 0.0;
         const double functions = static_cast<double>(inner.basis.size());
-        return tolerance_ * std::sqrt(turnover2_ / gathered_ * functions * outer.area / inner.area);
+        return std::sqrt(uncertainty2_ / gathered_ * functions * outer.area / inner.area);
     }
 
     /// Gathers at a few points of the outer element, and asks for more of the edges where they cancel.
@@ -176,14 +175,14 @@ public:
         const double norm = std::sqrt(outer.area * sum2 / static_cast<double>(count));
         const double excess = error(outer, inner) / (allowed * std::max(norm, floor));
         if (excess > 1.0) tolerance_ = std::max(tolerance_ / excess, finest);
-        turnover2_ = gathered_ = 0.0;
+        uncertainty2_ = gathered_ = 0.0;
     }
 
 private:
     PolygonMoments moments_;
     Loops2 flat_;
     double tolerance_;
-    double turnover2_ = 0.0, gathered_ = 0.0; ///< sums over points
+    double uncertainty2_ = 0.0, gathered_ = 0.0; ///< sums over points
 };
 
 // A few polygons stand before it.
@@ -382,7 +381,8 @@ private:
 
     // The inner integral is exact on the larger polygon, the outer one runs over the smaller.
     void near(Sight sight) {
-        const bool swapped = a_.radius > b_.radius;
+        constexpr double equal = 1.0 + 1e-9; // rounding does not choose between elements of one size
+        const bool swapped = a_.radius > equal * b_.radius;
         const ElementShape& outer = swapped ? b_ : a_;
         const ElementShape& inner = swapped ? a_ : b_;
         const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);
