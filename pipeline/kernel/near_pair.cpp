@@ -240,15 +240,15 @@ private:
                 result.push_back(std::move(cell));
                 continue;
             }
-            for (Cell& part : parts(cell, cell.t.foretold <= clearly * cell.s.foretold)) waiting.push_back(std::move(part));
+            for (Cell& part : parts(cell, cell.t.foretold <= clearly * cell.s.foretold))
+                waiting.push_back(std::move(part));
         }
         return result;
     }
 
     // Both sides of a cell's division; the same error per area will do.
     static std::array<Cell, 2> parts(const Cell& cell, bool across_s) {
-        const auto corners =
-            divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division);
+        const auto corners = divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division);
         std::array<Cell, 2> result{Cell{cell.facet, corners[0]}, Cell{cell.facet, corners[1]}};
         for (Cell& part : result) part.wanted = cell.wanted;
         return result;
@@ -314,7 +314,8 @@ private:
             if (left <= allowed) return;
             std::size_t count = 0;
             while (count < cells_.size() && left > 0.5 * allowed) left -= cells_[count++].error();
-            while (count < cells_.size() && clearly * cells_[count].error() > cells_[count - 1].error()) ++count;
+            while (count < cells_.size() && clearly * cells_[count].error() > cells_[count - 1].error())
+                ++count;
             std::vector<Cell> again;
             for (std::size_t c = 0; c < count; ++c)
                 improve(cells_[c], 0.5 * allowed / static_cast<double>(count), again);

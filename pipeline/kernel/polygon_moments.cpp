@@ -201,7 +201,7 @@ void PolygonMoments::to_plane(const visibility::Loops3& loops, visibility::Loops
 }
 
 double PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops,
-                            double tolerance, std::span<double> values) const {
+                              double tolerance, std::span<double> values) const {
     std::fill(values.begin(), values.end(), 0.0);
     const double h = glm::dot(front_, x - origin_);
     if (!(h > 0.0)) return 0.0;

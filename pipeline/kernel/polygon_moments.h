@@ -36,7 +36,7 @@ public:
     /// @return  what values_0 may be off, over the function's value: the tolerance, or rounding, of the sum of what the
     ///          edges contribute, each without its sign [1]
     double gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
-                std::span<double> values) const;
+                  std::span<double> values) const;
 
 private:
     Vec3 origin_, axis_u_, axis_v_, front_;    ///< orthonormal frame of the plane

@@ -110,7 +110,8 @@ public:
           piece_(piece_a),
           inner_(piece_b, b.basis),
           tolerance_(tolerance),
-          rule_(geometry::gauss_rule((tolerance < little ? outer_nodes : few_outer_nodes) + a.basis.degree() / 2)) {
+          rule_(geometry::gauss_rule((tolerance < little ? outer_nodes : few_outer_nodes) +
+                                     a.basis.degree() / 2)) {
         for (const Polygon& part : outer_parts(piece_a, piece_b)) add_triangles(part, piece_b);
         const std::size_t n = rule_.nodes.size();
         for (std::size_t i = 0; i < n; ++i) {

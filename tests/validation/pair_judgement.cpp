@@ -62,11 +62,12 @@ std::string class_row(std::string_view name, std::span<const Judgement* const> r
         uncertainty = std::max(uncertainty, row->uncertainty);
     }
     const double n = static_cast<double>(rows.size());
-    return fmt::format(
-        "{:<10} {:>6} {:>7.2f} {:>7.2f} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.3f} {:>9.1e} {:>6} {:>8.1f}\n", name,
-        rows.size(), 100.0 * static_cast<double>(within) / n, 100.0 * static_cast<double>(honest) / n,
-        quantile(ratios, 0.5), quantile(ratios, 0.95), quantile(ratios, 1.0), quantile(pessimism, 0.5), 1e3 * seconds / n, uncertainty,
-        rows.size() - judged, 1e3 * reference_seconds / n);
+    return fmt::format("{:<10} {:>6} {:>7.2f} {:>7.2f} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.3f} {:>9.1e} "
+                       "{:>6} {:>8.1f}\n",
+                       name, rows.size(), 100.0 * static_cast<double>(within) / n,
+                       100.0 * static_cast<double>(honest) / n, quantile(ratios, 0.5), quantile(ratios, 0.95),
+                       quantile(ratios, 1.0), quantile(pessimism, 0.5), 1e3 * seconds / n, uncertainty,
+                       rows.size() - judged, 1e3 * reference_seconds / n);
 }
 
 template <class Badness>
@@ -133,9 +134,10 @@ std::vector<Judgement> judge_series(std::uint64_t count, std::uint64_t seed, dou
 }
 
 std::string report(std::span<const Judgement> judgements, std::size_t worst) {
-    std::string text = fmt::format("{:<10} {:>6} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n",
-                                   "class", "pairs", "within%", "honest%", "err/tol50", "err/tol95",
-                                   "err/tolmax", "est/err50", "ms/block", "ref.max", "unsure", "ms/ref");
+    std::string text =
+        fmt::format("{:<10} {:>6} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n", "class",
+                    "pairs", "within%", "honest%", "err/tol50", "err/tol95", "err/tolmax", "est/err50",
+                    "ms/block", "ref.max", "unsure", "ms/ref");
     std::vector<const Judgement*> all;
     for (std::size_t kind = 0; kind < pair_class_names.size(); ++kind) {
         std::vector<const Judgement*> rows;
