@@ -52,7 +52,7 @@ function(kinelux_stage name)
     install(TARGETS ${name})
 endfunction()
 
-# kinelux_test(name LABEL unit|validation|hard|stages|target SOURCES ... LINKS ...): one gtest executable, every TEST a ctest.
+# kinelux_test(name LABEL unit|validation|hard|stages SOURCES ... LINKS ...): one gtest executable, every TEST a ctest.
 function(kinelux_test name)
     cmake_parse_arguments(arg "" "LABEL" "SOURCES;LINKS" ${ARGN})
     add_executable(${name} ${arg_SOURCES})

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -19,11 +20,15 @@ using geometry::Facet;
 using geometry::SurfaceNode;
 
 constexpr int most_nodes = 12;
+// Symmetric elements make equal candidates: the first is taken unless another is better by more than rounding, so that
+// an element's place does not choose.
+constexpr double clearly = 1.0 + 1e-6;
 
 // A bilinear quadrilateral in a facet's barycentric coordinates: s runs from the edge 0-1 to the edge 3-2, t along them.
 // A triangle has 2 = 3. Each direction has its Gauss rule, its error, and where it is divided.
 struct Direction {
     int nodes = 2;
+    double rate = 1.0;         ///< Singularity::rate
     double raw_error = 0.0;    ///< of the cell's values, before calibration [1]
     double calibration = 10.0; ///< what raw errors were found to be wrong by nearby
     double foretold = 0.0;     ///< error relative to the integrand's size, from where it is singular [1]
@@ -36,6 +41,7 @@ struct Cell {
     const Facet* facet;
     std::array<Vec2, 4> corners;
     Direction s, t;
+    double wanted = 0.0; ///< foretold error x area that will do [m2]
     std::vector<double> values;
 
     double error() const { return s.error() + t.error(); }
@@ -140,7 +146,7 @@ private:
         const std::complex<double> x = 2.0 * z - 1.0;
         const std::complex<double> root = std::sqrt(x * x - 1.0);
         const double rate = std::max(std::abs(x + root), std::abs(x - root));
-        if (rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
+        if (clearly * rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
     }
 
     const InnerPolygon& polygon_;
@@ -162,27 +168,23 @@ public:
     OuterResult run(std::span<const OuterPiece> pieces) {
         std::vector<Cell> first;
         for (const OuterPiece& piece : pieces) append_cells(piece, first);
-        for (const Cell& cell : first) total_area_ += area_of(cell);
-        // Where the integrand gathers in small cells those must be the better: planned again, for what they hold.
-        constexpr int most_plans = 4;
-        plan_tolerance_ = options_.tolerance;
-        for (int plan = 0; plan < most_plans; ++plan) {
-            cells_ = options_.polygon != nullptr ? planned(first) : first;
-            for (Cell& cell : cells_) {
-                if (options_.refine) ask_for_measuring(cell);
-                evaluate(cell);
-            }
-            constexpr double usual = 3.0; // at hinges; the plan allows for it
-            const double gathering = options_.refine ? 0.0 : concentration();
-            if (gathering < usual) break;
-            plan_tolerance_ *= usual / gathering;
+        double total_area = 0.0;
+        for (const Cell& cell : first) total_area += area_of(cell);
+        for (Cell& cell : first) cell.wanted = plan_share * options_.tolerance * total_area;
+        cells_ = options_.polygon != nullptr ? planned(std::move(first)) : std::move(first);
+        for (Cell& cell : cells_) {
+            if (options_.refine) ask_for_measuring(cell);
+            evaluate(cell);
         }
-        if (options_.refine) refine();
+        if (options_.refine)
+            refine();
+        else if (options_.settle)
+            settle();
 
         OuterResult result;
         result.values = sum_of_cells();
         for (const Cell& cell : cells_) result.error += cell.error();
-        if (!options_.refine)
+        if (!options_.refine && !options_.settle)
             result.error = options_.tolerance * std::max(std::sqrt(norm2(result.values)), options_.floor);
         result.points = points_;
         return result;
@@ -196,28 +198,16 @@ private:
         return sum;
     }
 
-    // The foretold errors weighted by what cells hold, relative to the same weighted by their areas.
-    double concentration() const {
-        const double total = std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
-        double held = 0.0, by_area = 0.0;
-        for (const Cell& cell : cells_) {
-            const double foretold = cell.s.foretold + cell.t.foretold;
-            held += foretold * std::sqrt(norm2(cell.values));
-            by_area += foretold * area_of(cell) / total_area_;
-        }
-        return total > 0.0 && by_area > 0.0 ? held / (total * by_area) : 1.0;
-    }
-
     static bool smaller_error(const Cell& a, const Cell& b) { return a.error() < b.error(); }
 
     static void append_cells(const OuterPiece& piece, std::vector<Cell>& cells) {
         const std::vector<Vec2>& p = piece.corners;
-        if (p.size() == 3) return cells.push_back({piece.facet, {p[0], p[1], p[2], p[2]}, {}, {}, {}});
-        if (p.size() == 4) return cells.push_back({piece.facet, {p[0], p[1], p[2], p[3]}, {}, {}, {}});
+        if (p.size() == 3) return cells.push_back({piece.facet, {p[0], p[1], p[2], p[2]}});
+        if (p.size() == 4) return cells.push_back({piece.facet, {p[0], p[1], p[2], p[3]}});
         Vec2 centre(0.0);
         for (const Vec2& corner : p) centre += corner / static_cast<double>(p.size());
         for (std::size_t i = 0; i < p.size(); ++i)
-            cells.push_back({piece.facet, {p[i], p[(i + 1) % p.size()], centre, centre}, {}, {}, {}});
+            cells.push_back({piece.facet, {p[i], p[(i + 1) % p.size()], centre, centre}});
     }
 
     // By the diagonals; exact on flat facets, and only for shares.
@@ -250,11 +240,17 @@ private:
                 result.push_back(std::move(cell));
                 continue;
             }
-            const bool across_s = cell.s.foretold >= cell.t.foretold;
-            for (const auto& corners :
-                 divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division))
-                waiting.push_back({cell.facet, corners, {}, {}, {}});
+            for (Cell& part : parts(cell, cell.t.foretold <= clearly * cell.s.foretold))
+                waiting.push_back(std::move(part));
         }
+        return result;
+    }
+
+    // Both sides of a cell's division; the same error per area will do.
+    static std::array<Cell, 2> parts(const Cell& cell, bool across_s) {
+        const auto corners = divided(cell.corners, across_s, across_s ? cell.s.division : cell.t.division);
+        std::array<Cell, 2> result{Cell{cell.facet, corners[0]}, Cell{cell.facet, corners[1]}};
+        for (Cell& part : result) part.wanted = cell.wanted;
         return result;
     }
 
@@ -269,30 +265,29 @@ private:
             foreteller.along(position(cell.facet, c[0] + at * (c[3] - c[0])),
                              position(cell.facet, c[1] + at * (c[2] - c[1])), t);
         }
-        const double share = area_of(cell) / total_area_;
         const double s_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[1])),
                                               position(cell.facet, 0.5 * (c[2] + c[3])));
         const double t_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[3])),
                                               position(cell.facet, 0.5 * (c[1] + c[2])));
-        const bool s_resolved = choose(s, share, s_length, cell.s);
-        const bool t_resolved = choose(t, share, t_length, cell.t);
+        const double wanted = cell.wanted / std::max(area_of(cell), std::numeric_limits<double>::min());
+        const bool s_resolved = choose(s, wanted, s_length, cell.s);
+        const bool t_resolved = choose(t, wanted, t_length, cell.t);
         return s_resolved && t_resolved;
     }
 
-    bool choose(const Singularity& nearest, double share, double length, Direction& direction) const {
-        // What errors add up to stays behind the sum of their bounds, the more so the coarser the tolerance.
-        const double wanted = 3.0 * plan_tolerance_ * std::pow(100.0 * plan_tolerance_, 0.15) / share;
+    bool choose(const Singularity& nearest, double wanted, double length, Direction& direction) const {
         const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
         const double log_rate = std::log(nearest.rate);
-        constexpr int most = 8, fewest = 2;
+        direction.rate = nearest.rate;
+        constexpr int fewest = 2;
         const double amplitude =
             2.0 * (2.0 + element_.basis.degree()); // on the ellipse through the singularity
         const double degree = std::log(amplitude / wanted) / std::max(log_rate, 1e-9);
         const double nodes = std::ceil(0.5 * (degree + extra));
-        direction.nodes = static_cast<int>(std::clamp(nodes, double{fewest}, double{most}));
+        direction.nodes = static_cast<int>(std::clamp(nodes, double{fewest}, double{most_planned_nodes}));
         direction.foretold =
             std::min(1.0, amplitude * std::pow(nearest.rate, -(2.0 * direction.nodes - extra)));
-        if (nodes <= most) return true;
+        if (nodes <= most_planned_nodes) return true;
         // A singularity that the cell all but touches is weak: the integrand only bends there, over the cell's length.
         const double size = 2.0 * element_.radius;
         constexpr double border = 1e-6;
@@ -303,6 +298,54 @@ private:
         }
         direction.division = nearest.place < 0.25 ? 0.25 : nearest.place > 0.75 ? 0.75 : nearest.place;
         return direction.foretold <= wanted;
+    }
+
+    // Evaluates again, with more nodes or in parts, the cells that hold most of the measured error, until what is left
+    // is below the tolerance.
+    void settle() {
+        constexpr int most_passes = 12;
+        for (int pass = 0; pass < most_passes && points_ < options_.most_points; ++pass) {
+            const double allowed =
+                options_.tolerance * std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
+            std::stable_sort(cells_.begin(), cells_.end(),
+                             [](const Cell& a, const Cell& b) { return smaller_error(b, a); });
+            double left = 0.0;
+            for (const Cell& cell : cells_) left += cell.error();
+            if (left <= allowed) return;
+            std::size_t count = 0;
+            while (count < cells_.size() && left > 0.5 * allowed) left -= cells_[count++].error();
+            while (count < cells_.size() && clearly * cells_[count].error() > cells_[count - 1].error())
+                ++count;
+            std::vector<Cell> again;
+            for (std::size_t c = 0; c < count; ++c)
+                improve(cells_[c], 0.5 * allowed / static_cast<double>(count), again);
+            for (Cell& cell : again) evaluate(cell);
+            cells_.erase(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(count));
+            std::move(again.begin(), again.end(), std::back_inserter(cells_));
+        }
+    }
+
+    // What takes a cell's place for its error to become a wanted one.
+    void improve(Cell& cell, double wanted, std::vector<Cell>& result) const {
+        const auto enough = [&](Direction& direction) {
+            const double excess = std::log(2.0 * direction.error() / wanted);
+            if (!(excess > 0.0)) return true;
+            const double more = std::ceil(0.5 * excess / std::max(std::log(direction.rate), 1e-9));
+            if (direction.nodes + more > most_planned_nodes) return false;
+            direction.nodes += static_cast<int>(more);
+            return true;
+        };
+        const bool across_s = cell.t.error() <= clearly * cell.s.error();
+        if (enough(across_s ? cell.s : cell.t)) {
+            Direction& other = across_s ? cell.t : cell.s;
+            if (!enough(other)) other.nodes = most_planned_nodes;
+            result.push_back(std::move(cell));
+            return;
+        }
+        cell.wanted = area_of(cell) * wanted / std::sqrt(norm2(cell.values));
+        std::vector<Cell> both;
+        for (Cell& part : parts(cell, across_s)) both.push_back(std::move(part));
+        for (Cell& part : planned(std::move(both))) result.push_back(std::move(part));
     }
 
     void refine() {
@@ -332,8 +375,8 @@ private:
     std::array<Cell, 2> split(const Cell& cell) {
         const bool across_s = cell.s.error() >= cell.t.error();
         const auto corners = divided(cell.corners, across_s, 0.5);
-        std::array<Cell, 2> result{Cell{cell.facet, corners[0], cell.s, cell.t, {}},
-                                   Cell{cell.facet, corners[1], cell.s, cell.t, {}}};
+        std::array<Cell, 2> result{Cell{cell.facet, corners[0], cell.s, cell.t},
+                                   Cell{cell.facet, corners[1], cell.s, cell.t}};
         for (Cell& half : result) evaluate(half);
         calibrate(cell, result);
         return result;
@@ -379,6 +422,11 @@ private:
         if (options_.refine) {
             cell.s.raw_error = error_along(along_s_, cell.s.nodes);
             cell.t.raw_error = error_along(along_t_, cell.t.nodes);
+        } else if (options_.settle) {
+            for (Direction* direction : {&cell.s, &cell.t}) {
+                direction->raw_error = error_left(direction == &cell.s ? along_s_ : along_t_, *direction);
+                direction->calibration = 1.0;
+            }
         }
     }
 
@@ -396,33 +444,56 @@ private:
                 entries_[k * columns_ + l] = area * phi_[k] * gathered_[l];
     }
 
-    // Where the Legendre coefficients c_k of an integrand fall like q^k the error of n Gauss nodes is about c_2n, or
-    // c_(n-1)^2 / c_0; where they fall like a power of k it is smaller than that as well.
-    double error_along(std::span<const double> lines, int nodes) {
+    // Norms of the Legendre coefficients along one direction, as the nodes see them.
+    void measure_coefficients(std::span<const double> lines, int nodes) {
         const auto& weights = geometry::gauss_rule(nodes).weights;
         const auto& legendre = legendre_table(nodes);
         const std::size_t n = weights.size();
-        double scale2 = 0.0, highest2 = 0.0;
+        norms_.assign(n, 0.0);
         for (std::size_t k = 0; k < n; ++k) {
             coefficients_.assign(size_, 0.0);
             for (std::size_t i = 0; i < n; ++i)
                 for (std::size_t e = 0; e < size_; ++e)
                     coefficients_[e] += weights[i] * legendre[k * n + i] * lines[i * size_ + e];
-            const double square = norm2(coefficients_);
-            scale2 += square;
-            if (k >= 2 && k + 2 >= n) highest2 = std::max(highest2, square);
+            norms_[k] = std::sqrt(norm2(coefficients_));
         }
-        return scale2 > 0.0 ? highest2 / std::sqrt(scale2) : 0.0;
     }
 
+    // Where the Legendre coefficients c_k of an integrand fall like q^k the error of n Gauss nodes is about c_2n, or
+    // c_(n-1)^2 / c_0; where they fall like a power of k it is smaller than that as well.
+    double error_along(std::span<const double> lines, int nodes) {
+        measure_coefficients(lines, nodes);
+        double highest = 0.0;
+        for (std::size_t k = 2; k < norms_.size(); ++k)
+            if (k + 2 >= norms_.size()) highest = std::max(highest, norms_[k]);
+        const double scale = std::sqrt(norm2(norms_));
+        return scale > 0.0 ? highest * highest / scale : 0.0;
+    }
+
+    // The error of n Gauss nodes is about c_2n. The highest coefficients are measured; from there they fall by the rate
+    // that the nearest singularity gives, once the degree of the basis is passed, or as fast as they were seen to fall.
+    double error_left(std::span<const double> lines, const Direction& direction) {
+        measure_coefficients(lines, direction.nodes);
+        const int n = direction.nodes, first_fall = element_.basis.degree() + 1;
+        const auto count = static_cast<std::size_t>(n);
+        const double highest = std::max(norms_[count - 1], norms_[count - 2] / direction.rate);
+        const double fall = std::pow(direction.rate, -std::max(0, std::min(n + 1, 2 * n - first_fall)));
+        double before = 0.0;
+        for (std::size_t k = (count - 1) / 2; k + 2 < count; ++k) before = std::max(before, norms_[k]);
+        const double seen = count >= 5 && before > 0.0 ? std::min(1.0, highest / before) : 1.0;
+        constexpr double safety = 2.0;
+        return safety * highest * std::min(fall, seen);
+    }
+
+    static constexpr int most_planned_nodes = 8;
+    static constexpr double plan_share = 3.0; ///< of the tolerance, for what a first plan foretells
     static constexpr std::size_t most_planned = 4000;
 
     const ElementShape& element_;
     std::size_t columns_, size_;
     PointGather& inner_;
     OuterOptions options_;
-    double total_area_ = 0.0, plan_tolerance_ = 0.0;
-    std::vector<double> gathered_, phi_, entries_, along_s_, along_t_, coefficients_;
+    std::vector<double> gathered_, phi_, entries_, along_s_, along_t_, coefficients_, norms_;
     std::vector<Cell> cells_;
     std::size_t points_ = 0;
 };

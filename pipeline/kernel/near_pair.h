@@ -39,6 +39,9 @@ struct OuterOptions {
     const InnerPolygon* polygon = nullptr; ///< the first cells and their rules are planned from its edges
     bool refine =
         true; ///< false where the polygon says all there is to know: all of it is visible from everywhere
+    bool settle =
+        true; ///< without `refine`: errors are measured and plans amended; false where the inner integral is
+              ///< sampled, so that measuring would find the noise
 };
 
 struct OuterResult {

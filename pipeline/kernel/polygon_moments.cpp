@@ -218,11 +218,11 @@ void PolygonMoments::to_plane(const visibility::Loops3& loops, visibility::Loops
     flat.ends = loops.ends;
 }
 
-void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops,
-                            double tolerance, std::span<double> values) const {
+double PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops,
+                              double tolerance, std::span<double> values) const {
     std::fill(values.begin(), values.end(), 0.0);
     const double h = glm::dot(front_, x - origin_);
-    if (!(h > 0.0)) return;
+    if (!(h > 0.0)) return 0.0;
     const Vec2 foot = to_plane(x);
     constexpr double closed_form = 1e-9; // its terms cancel where the polygon looks small
     if (degree_ == 0 && tolerance >= closed_form) {
@@ -243,10 +243,14 @@ void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility:
                                     static_cast<std::size_t>(degree_),
                                     std::max(tolerance / cancellation, finest)};
     Moments moments{};
+    double turnover = 0.0;
     for (std::size_t l = 0; l < loops.size(); ++l) {
         const std::span<const Vec2> loop = loops[l];
-        for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++)
+        for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+            const double before = moments[0];
             integrator.add(loop[j] - foot, loop[i] - foot, moments);
+            turnover += std::abs(moments[0] - before);
+        }
     }
     moments = shifted(moments, scaled_foot, static_cast<std::size_t>(degree_));
     for (std::size_t l = 0; l < values.size(); ++l) {
@@ -254,6 +258,8 @@ void PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibility:
         for (std::size_t m = 0; m < values.size(); ++m) sum += monomials_[l * values.size() + m] * moments[m];
         values[l] = sum / std::numbers::pi;
     }
+    const double rounding = std::numeric_limits<double>::epsilon() * cancellation;
+    return std::max(tolerance, rounding) * turnover / std::numbers::pi;
 }
 
 } // namespace kinelux::kernel

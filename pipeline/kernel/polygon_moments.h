@@ -31,10 +31,12 @@ public:
     /// @param normal  the point's, unit
     /// @param loops   boundaries of the polygon in the plane's coordinates; none of it may lie below the point's
     ///                horizon
-    /// @param tolerance  relative to the moment of the constant [1], 1e-14..0.1
+    /// @param tolerance  relative to the edges' contributions [1], 1e-14..0.1
     /// @param values  basis size, overwritten
-    void gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
-                std::span<double> values) const;
+    /// @return  what values_0 may be off, over the function's value: the tolerance, or rounding, of the sum of what the
+    ///          edges contribute, each without its sign [1]
+    double gather(const Vec3& x, const Vec3& normal, const visibility::Loops2& loops, double tolerance,
+                  std::span<double> values) const;
 
 private:
     Vec3 origin_, axis_u_, axis_v_, front_;    ///< orthonormal frame of the plane

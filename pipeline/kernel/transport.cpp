@@ -154,13 +154,42 @@ public:
         moments_.to_plane(loops, flat_);
     }
     void gather(const SurfaceNode& x, std::span<double> values) override {
-        moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+        const double uncertainty = moments_.gather(x.position, x.normal, flat_, tolerance_, values);
+        uncertainty2_ += uncertainty * uncertainty;
+        ++gathered_;
+    }
+
+    /// Frobenius norm of what the inner integrals may be off in a block over the outer element [1].
+    double error(const ElementShape& outer, const ElementShape& inner) const {
+        if (gathered_ == 0) return 0.0;
+        const double functions = static_cast<double>(inner.basis.size());
+        return std::sqrt(uncertainty2_ / gathered_ * functions * outer.area / inner.area);
+    }
+
+    /// Gathers at a few points of the outer element, and asks for more of the edges where they cancel.
+    /// @param allowed  error of a block, relative to its norm or `floor`
+    void tighten(const ElementShape& outer, const ElementShape& inner, double allowed, double floor) {
+        constexpr std::size_t probes = 4;
+        constexpr double finest = 1e-14;
+        const NodeSet& xs = outer.rules[0];
+        std::vector<double> values(inner.basis.size());
+        double sum2 = 0.0;
+        const std::size_t count = std::min(probes, xs.nodes.size());
+        for (std::size_t k = 0; k < count; ++k) {
+            gather(xs.nodes[k * xs.nodes.size() / count], values);
+            for (const double value : values) sum2 += value * value;
+        }
+        const double norm = std::sqrt(outer.area * sum2 / static_cast<double>(count));
+        const double excess = error(outer, inner) / (allowed * std::max(norm, floor));
+        if (excess > 1.0) tolerance_ = std::max(tolerance_ / excess, finest);
+        uncertainty2_ = gathered_ = 0.0;
     }
 
 private:
     PolygonMoments moments_;
     Loops2 flat_;
     double tolerance_;
+    double uncertainty2_ = 0.0, gathered_ = 0.0; ///< sums over points
 };
 
 // A few polygons stand before it.
@@ -359,7 +388,8 @@ private:
 
     // The inner integral is exact on the larger polygon, the outer one runs over the smaller.
     void near(Sight sight) {
-        const bool swapped = a_.radius > b_.radius;
+        constexpr double equal = 1.0 + 1e-9; // rounding does not choose between elements of one size
+        const bool swapped = a_.radius > equal * b_.radius;
         const ElementShape& outer = swapped ? b_ : a_;
         const ElementShape& inner = swapped ? a_ : b_;
         const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);
@@ -378,7 +408,9 @@ private:
         OuterResult result;
         if (sight == Sight::Clear) {
             WholePolygon gather(inner, loops, gather_tolerance);
+            gather.tighten(outer, inner, gather_tolerance, outer_options.floor);
             result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
+            result.error += gather.error(outer, inner);
         } else if (sight == Sight::Few && options_.exact_sight) {
             outer_options.tolerance = options_.sight_tolerance;
             outer_options.refine = true;
@@ -390,6 +422,7 @@ private:
         } else {
             Rays rays(occluders_, options_, true);
             outer_options.tolerance = std::max(options_.tolerance, sampled_tolerance);
+            outer_options.settle = false;
             SampledPolygon gather(inner, loops, rays, gather_tolerance);
             constexpr std::size_t many_pieces = 16;
             result = pieces.size() > many_pieces

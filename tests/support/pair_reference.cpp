@@ -15,6 +15,8 @@ namespace {
 using geometry::ElementShape;
 
 constexpr int outer_nodes = 8;     ///< per direction of a cell, at degree 0
+constexpr int few_outer_nodes = 6; ///< the same where little is asked for
+constexpr double little = 1e-5;    ///< tolerance from which few nodes cost less
 constexpr double near_side = 0.25; ///< of the outer piece's size: a side as near cuts it
 constexpr double vanishing_side =
     1e-4;                           ///< projected / real length of a side that is perpendicular to the piece
@@ -108,7 +110,8 @@ public:
           piece_(piece_a),
           inner_(piece_b, b.basis),
           tolerance_(tolerance),
-          rule_(geometry::gauss_rule(outer_nodes + a.basis.degree() / 2)) {
+          rule_(geometry::gauss_rule((tolerance < little ? outer_nodes : few_outer_nodes) +
+                                     a.basis.degree() / 2)) {
         for (const Polygon& part : outer_parts(piece_a, piece_b)) add_triangles(part, piece_b);
         const std::size_t n = rule_.nodes.size();
         for (std::size_t i = 0; i < n; ++i) {

@@ -18,7 +18,9 @@ namespace kinelux::support {
 namespace {
 
 constexpr double far_ratio = 1.0; ///< distance / longest side from which the Gauss product is exact to 1e-10
-constexpr double compact_ratio = 10.;   ///< longest side^2 / area of a triangle fit for polar integration
+/// Longest side of a triangle fit for polar integration, in area / size of the piece: its functions grow no faster
+/// than by the piece's width.
+constexpr double compact_ratio = 10.0;
 constexpr double hollow_ratio = 60.0;   ///< size^2 / area of a piece with holes that is taken whole
 constexpr double smallest_part = 1e-12; ///< of the piece: a part as small is never bisected
 constexpr int gauss_nodes = 9;          ///< per direction of the far product at degree 0
@@ -133,6 +135,7 @@ PointIntegral::PointIntegral(const FlatPiece& piece, const geometry::Basis& basi
     // Bounds along one side of the piece: of a long one they are thin, or it lies across and is bisected.
     const double area = std::accumulate(parts_.begin(), parts_.end(), 0.0,
                                         [](double sum, const Part& part) { return sum + part.area; });
+    compact_size_ = compact_ratio * area / size_;
     const bool thin = std::min(high.x - low.x, high.y - low.y) * compact_ratio < size_;
     if (thin || area * hollow_ratio < size_ * size_) sides_.clear();
 }
@@ -171,8 +174,7 @@ void PointIntegral::add_part(const Receiver& receiver, std::size_t index) {
     const double distance = std::hypot(receiver.height, distance_to_triangle(receiver.foot, part.corners));
     if (distance > far_ratio * part.size) {
         add_gauss(receiver, part);
-    } else if (part.size * part.size < compact_ratio * part.area ||
-               part.size < smallest_part * parts_[0].size) {
+    } else if (part.size < compact_size_ || part.size < smallest_part * parts_[0].size) {
         const auto& c = part.corners;
         add_polar(receiver, std::array{Line{c[0], c[1]}, Line{c[1], c[2]}, Line{c[2], c[0]}});
     } else {

@@ -52,8 +52,9 @@ private:
     const geometry::Basis& basis_;
     std::vector<Part> parts_;
     std::size_t roots_ = 0;
-    std::vector<Line> sides_; ///< of all loops; empty: the piece is not compact
-    double size_ = 0.0;       ///< of the piece [m]
+    std::vector<Line> sides_;   ///< of all loops; empty: the piece is not compact
+    double size_ = 0.0;         ///< of the piece [m]
+    double compact_size_ = 0.0; ///< longest side of a part fit for polar integration [m]
 };
 
 } // namespace kinelux::support

@@ -18,7 +18,7 @@ struct Judgement {
     double error = 0.0;       ///< of the block, over `norm` (absolute where that is 0) [1]
     double estimate = 0.0;    ///< TransportBlock::error, likewise [1]
     double uncertainty = 0.0; ///< of the reference, likewise [1]
-    double seconds = 0.0;     ///< for the block
+    double seconds = 0.0;     ///< of CPU time for the block
     double reference_seconds = 0.0;
 
     /// The error that is proved, and the one that the estimate has to cover: less what the reference may be off.

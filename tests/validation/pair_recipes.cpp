@@ -300,19 +300,30 @@ Frame placed(const Frame& frame, const Frame& place, double scale) {
     return {place.origin + scale * turn(frame.origin), scale * turn(frame.u), scale * turn(frame.v)};
 }
 
+Dice dice_of(const PairRecipe& recipe) {
+    return Dice(core::mix(recipe.seed, static_cast<std::uint64_t>(recipe.kind)));
+}
+
 } // namespace
 
-TestPair make_pair(const PairRecipe& recipe) {
-    Dice dice(core::mix(recipe.seed, static_cast<std::uint64_t>(recipe.kind)));
+TestPair make_pair(const PairRecipe& recipe, const Placement& placement) {
+    Dice dice = dice_of(recipe);
     const Layout layout = layout_of(recipe.kind, dice);
+    const Frame place{placement.origin, placement.axis_u, placement.axis_v};
+    model::PatchSet set;
+    set.patches = {patch_of(layout.a, placed(layout.frame_a, place, placement.scale)),
+                   patch_of(layout.b, placed(layout.frame_b, place, placement.scale))};
+    auto shapes = geometry::element_shapes(set, support::whole_patch_elements(set), recipe.degree, 0);
+    return {std::move(shapes[0]), std::move(shapes[1]), layout.what};
+}
+
+TestPair make_pair(const PairRecipe& recipe) {
+    Dice dice = dice_of(recipe);
+    layout_of(recipe.kind, dice); // the placement's numbers follow the layout's
     const double scale = dice.decades(-2.0, 2.0);
     const double offset = scale * dice.between(0.0, 3.0);
     const Frame place = random_frame(dice, offset * dice.direction());
-    model::PatchSet set;
-    set.patches = {patch_of(layout.a, placed(layout.frame_a, place, scale)),
-                   patch_of(layout.b, placed(layout.frame_b, place, scale))};
-    auto shapes = geometry::element_shapes(set, support::whole_patch_elements(set), recipe.degree, 0);
-    return {std::move(shapes[0]), std::move(shapes[1]), layout.what};
+    return make_pair(recipe, Placement{scale, place.u, place.v, place.origin});
 }
 
 PairRecipe series_recipe(std::uint64_t index, std::uint64_t seed) {

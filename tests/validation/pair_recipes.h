@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/vec.h"
 #include "geometry/element_shape.h"
 
 namespace kinelux::validation {
@@ -36,12 +37,22 @@ struct PairRecipe {
     int degree = 0; ///< of both bases, 0..6
 };
 
-/// A pair in some place, turned and scaled at random.
+/// Where a pair stands: scale, then turn, then shift. Elements as the kinds describe them measure about 1 m.
+struct Placement {
+    double scale = 1.0;
+    Vec3 axis_u{1.0, 0.0, 0.0}, axis_v{0.0, 1.0, 0.0}; ///< images of the axes x and y, orthonormal
+    Vec3 origin{0.0};                                  ///< of the origin [m]
+};
+
+/// A pair in some place.
 struct TestPair {
     geometry::ElementShape a, b;
     std::string what; ///< the kind's own figures: angle, gap, shapes
 };
 
+TestPair make_pair(const PairRecipe& recipe, const Placement& placement);
+
+/// Turned, shifted and scaled at random.
 TestPair make_pair(const PairRecipe& recipe);
 
 /// The `index`-th recipe of a series: classes in turn, degrees 0 to 3 nine times of ten, else 4 to 6.
