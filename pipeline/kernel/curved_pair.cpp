@@ -179,11 +179,7 @@ public:
     OuterResult integrate() const {
         const std::vector<double> guess = node_product(outer_, inner_, 1);
         double scale = std::max(norm(guess), floor_);
-        if (is_cluster(outer_)) {
-            const double change = difference(guess, node_product(outer_, inner_, 0));
-            if (change <= tolerance_ * scale) return {guess, change};
-            if (!worth_every_facet()) return by_nodes(guess, change);
-        }
+        if (is_cluster(outer_) && !worth_every_facet()) return by_nodes(guess);
         // Nodes may say too much of pairs that touch: the inner integrals are to be as exact as the block needs.
         constexpr int most_runs = 3;
         for (int run = 1;; ++run) {
@@ -196,17 +192,18 @@ public:
     }
 
 private:
-    // Few-millisecond limits; what is coarse should be cheap.
+    static constexpr double coarse = 1e-2; ///< tolerance from which on blocks should be cheap
+
+    // Limits of a few milliseconds, and of a tenth of that.
     bool worth_every_facet() const {
         constexpr std::size_t coarse_facets = 1u << 14u, fine_facets = 1u << 16u;
-        constexpr double coarse = 1e-2;
-        const std::size_t per_point = is_cluster(inner_) ? inner_.facets.size() : inner_.surface ? 512 : 128;
+        const std::size_t per_point = is_cluster(inner_) ? inner_.facets.size() : inner_.surface ? 128 : 64;
         return outer_.facets.size() * per_point <= (tolerance_ >= coarse ? coarse_facets : fine_facets);
     }
 
-    OuterResult by_nodes(const std::vector<double>& guess, double change) const {
-        constexpr double coarse = 1e-2;
-        if (tolerance_ >= coarse) return {guess, change};
+    // Their error is at most what fewer nodes are off from more.
+    OuterResult by_nodes(const std::vector<double>& guess) const {
+        if (tolerance_ >= coarse) return {guess, difference(guess, node_product(outer_, inner_, 0))};
         std::vector<double> values = node_product(outer_, inner_, 2);
         const double error = difference(values, guess);
         return {std::move(values), error};
@@ -218,10 +215,16 @@ private:
         const auto pieces = pieces_of(outer_, inner_);
         const std::size_t columns = inner_.basis.size();
         if (pieces.empty()) return {std::vector<double>(outer_.basis.size() * columns, 0.0)};
-        OuterOptions options{.tolerance = tolerance_, .floor = floor_};
+        OuterOptions options{.tolerance = tolerance_, .floor = floor_, .most_points = most_points()};
         if (!is_cluster(outer_)) return integrate_outer(outer_, pieces, columns, *gather, options);
         options.most_points = 8 * pieces.size() + 400;
         return integrate_facets(outer_, pieces, inner_, *gather, options);
+    }
+
+    // Surfaces that cross leave a jump along a line on the outer one: the estimate says what is left of it at the limit.
+    std::size_t most_points() const {
+        constexpr double points_at_coarse = 1200.0, most = 20000.0;
+        return static_cast<std::size_t>(std::min(points_at_coarse * std::sqrt(coarse / tolerance_), most));
     }
 
     std::unique_ptr<PointGather> gather_over(double accuracy) const {

@@ -20,7 +20,7 @@ constexpr std::array<int, 3> rule_degrees{2, 5, 8};
 constexpr int most_divisions = 30;
 constexpr std::size_t most_cells = 20000; ///< kept from point to point
 // Errors of the cells of one point have different signs and add up to about as many times one.
-constexpr double cells_at_once = 6.0;
+constexpr double cells_at_once = 2.0;
 // A rule converges towards a point as far away as this many radii of its cell.
 constexpr double nearest = 1.5;
 
@@ -186,7 +186,7 @@ std::size_t SurfaceCells::rule_for(const Cell& cell, const Look& look) const {
     if (look.most <= cell_accuracy_) return 0;
     if (look.distance < nearest * cell.radius || look.cut_error > cell_accuracy_) return rule_count;
     if (cell.roughness * look.most > cell_accuracy_) return rule_count;
-    constexpr double amplitude = 2.0, per_turn = 1.0 / 3.0;
+    constexpr double amplitude = 1.0, per_turn = 1.0 / 3.0;
     const double ratio = std::max(cell.radius / look.distance, per_turn * cell.turn);
     // The basis is rougher on large cells.
     const int taken = element_.basis.degree() >> cell.depth;
