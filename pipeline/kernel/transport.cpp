@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kernel/curved_pair.h"
 #include "kernel/far_pair.h"
 #include "kernel/near_pair.h"
 #include "kernel/polygon_moments.h"
@@ -72,6 +73,18 @@ bool crosses_horizon(const ElementShape& planar, const ElementShape& other) {
         for (const Vec3& corner : facet.corners)
             if (front.distance(corner) < -slack) return true;
     return false;
+}
+
+// Whether some part of a curved element may lie behind its own horizon as seen from the other one, or the other behind
+// some part's horizon.
+bool turns_away(const ElementShape& curved, const ElementShape& other) {
+    if (!curved.surface) return false;
+    const Vec3 axis = other.centre - curved.centre;
+    const double distance = glm::length(axis), radii = curved.radius + other.radius;
+    if (distance <= radii) return true;
+    const double angle = std::acos(std::clamp(glm::dot(curved.mean_normal, axis) / distance, -1.0, 1.0));
+    return angle + std::acos(std::clamp(curved.cone_cosine, -1.0, 1.0)) + std::asin(radii / distance) >
+           0.5 * std::numbers::pi;
 }
 
 Vec2 barycentric(const Facet& facet, const Vec3& point) {
@@ -300,10 +313,11 @@ public:
         const Sight sight = look();
         if (sight == Sight::Hidden) return {};
         const bool flat = a_.planar && b_.planar;
-        const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_));
+        const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_)) ||
+                            turns_away(a_, b_) || turns_away(b_, a_);
         const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
         if (!flat && !rule)
-            by_nodes(sight);
+            curved(sight);
         else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper()))
             near(sight);
         else
@@ -341,6 +355,10 @@ private:
     // Sampled visibility is off by half the root of the number of rays; clipping by less than its outer rule's tolerance.
     double rays_for_sight() const { return 0.25 / (options_.sight_tolerance * options_.sight_tolerance); }
 
+    double rays_between(std::size_t level_a, std::size_t level_b) const {
+        return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size());
+    }
+
     // Predicted times [us], as measured by kernel_bench.
     bool clipping_is_cheaper() const {
         if (!options_.exact_sight) return false;
@@ -351,10 +369,7 @@ private:
 
     void far(const FarRule& rule, Sight sight) {
         std::size_t level_a = rule.level_a, level_b = rule.level_b;
-        const auto rays = [&] {
-            return static_cast<double>(a_.rules[level_a].nodes.size() * b_.rules[level_b].nodes.size());
-        };
-        while (sight != Sight::Clear && rays() < rays_for_sight()) {
+        while (sight != Sight::Clear && rays_between(level_a, level_b) < rays_for_sight()) {
             const bool a_next = level_a <= level_b;
             if ((a_next ? level_a : level_b) + 1 == geometry::rule_levels) break;
             ++(a_next ? level_a : level_b);
@@ -363,12 +378,38 @@ private:
         block_.error = std::hypot(block_.error, rule.error);
     }
 
-    // Where no rule for curved or scattered elements that are close applies: ready nodes, and a guess of the error.
-    void by_nodes(Sight sight) {
-        // Of rays a few hundred say as much as such a pair's other errors let anybody hear.
-        const std::size_t level = sight == Sight::Clear ? 1 : 0;
+    // Curved elements and clusters: all of the block to the tolerance, and of it what rays between nodes find visible.
+    void curved(Sight sight) {
+        const double floor =
+            negligible * std::sqrt(std::min(a_.area, b_.area) / std::max(a_.area, b_.area));
+        if (sight == Sight::Clear) {
+            PairIntegral whole = curved_pair(a_, b_, options_.tolerance, floor);
+            block_.values = std::move(whole.values);
+            block_.error = whole.error;
+            return;
+        }
+        std::size_t level = 0;
+        while (level + 1 < geometry::rule_levels && rays_between(level, level) < rays_for_sight()) ++level;
         node_product(a_.rules[level], b_.rules[level], sight);
-        block_.error = std::hypot(block_.error, nodes_guess * frobenius_norm(block_.values));
+        if (!(frobenius_norm(block_.values) > 0.0)) return;
+        const double sampling = block_.error;
+        std::vector<double> seen = std::move(block_.values);
+        block_.values.assign(seen.size(), 0.0);
+        node_product(a_.rules[level], b_.rules[level], Sight::Clear);
+        constexpr double heard = 0.3; // of an error beside that of the sampled share
+        weigh(curved_pair(a_, b_, std::max(options_.tolerance, heard * options_.sight_tolerance), floor), seen,
+              sampling);
+    }
+
+    // The whole times the visible share of its constant, plus what nodes say beyond that, scaled to the whole. On entry
+    // block_.values is what the nodes say of the whole.
+    void weigh(const PairIntegral& whole, std::span<const double> seen, double sampling) {
+        const double share = seen[0] / block_.values[0], scale = whole.values[0] / block_.values[0];
+        for (std::size_t k = 0; k < seen.size(); ++k)
+            block_.values[k] = share * whole.values[k] + scale * (seen[k] - share * block_.values[k]);
+        // Nodes that weigh parts of the whole wrongly weigh what is visible of them wrongly.
+        const double mixed = share * (1.0 - share) * std::abs(scale - 1.0) * frobenius_norm(whole.values);
+        block_.error = std::hypot(share * whole.error, scale * sampling, mixed);
     }
 
     void node_product(const NodeSet& xs, const NodeSet& ys, Sight sight) {
