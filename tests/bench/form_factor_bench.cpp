@@ -160,8 +160,11 @@ struct Errors {
 Errors errors_of(const Case& item, std::span<const geometry::ElementShape> shapes,
                  const model::Coefficients& result) {
     std::vector<double> rows(shapes.size(), 0.0);
-    const auto first = static_cast<std::size_t>(2 * item.cells[0] * item.cells[0]);
-    const auto second = first + static_cast<std::size_t>(2 * item.cells[1] * item.cells[1]);
+    const auto triangles = [&](std::size_t patch) {
+        const auto n = static_cast<std::size_t>(item.cells[patch]);
+        return 2 * n * n;
+    };
+    const std::size_t first = triangles(0), second = first + triangles(1);
     for (const model::BlockEntry& entry : result.static_blocks.entries) {
         const double value = result.static_blocks.values[entry.offset];
         const double ratio = std::sqrt(shapes[entry.j].area / shapes[entry.i].area);
