@@ -175,8 +175,10 @@ Moments shifted(const Moments& moments, const Vec2& foot, std::size_t degree) {
 
 // The moment of 1 by Lambert's formula: per edge the angle it subtends times the cosine between the normal and the plane
 // through edge and point.
-double constant_moment(const Vec3& normal, double h, const Vec2& foot, const visibility::Loops2& loops) {
-    double sum = 0.0;
+// @param turnover  is set to the sum of what the edges contribute, each without its sign
+double constant_moment(const Vec3& normal, double h, const Vec2& foot, const visibility::Loops2& loops,
+                       double& turnover) {
+    double sum = 0.0, absolute = 0.0;
     for (std::size_t l = 0; l < loops.size(); ++l) {
         const std::span<const Vec2> loop = loops[l];
         Vec3 a(loop.back() - foot, -h);
@@ -184,10 +186,15 @@ double constant_moment(const Vec3& normal, double h, const Vec2& foot, const vis
             const Vec3 b(corner - foot, -h);
             const Vec3 cross = glm::cross(b, a);
             const double sine = glm::length(cross);
-            if (sine > 0.0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, cross) / sine;
+            if (sine > 0.0) {
+                const double edge = std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, cross) / sine;
+                sum += edge;
+                absolute += std::abs(edge);
+            }
             a = b;
         }
     }
+    turnover = 0.5 * absolute;
     return 0.5 * sum;
 }
 
@@ -227,8 +234,9 @@ double PolygonMoments::gather(const Vec3& x, const Vec3& normal, const visibilit
     constexpr double closed_form = 1e-9; // its terms cancel where the polygon looks small
     if (degree_ == 0 && tolerance >= closed_form) {
         const Vec3 in_plane(glm::dot(normal, axis_u_), glm::dot(normal, axis_v_), glm::dot(normal, front_));
-        values[0] = monomials_[0] * constant_moment(in_plane, h, foot, loops) / std::numbers::pi;
-        return;
+        double turnover = 0.0;
+        values[0] = monomials_[0] * constant_moment(in_plane, h, foot, loops, turnover) / std::numbers::pi;
+        return std::numeric_limits<double>::epsilon() * turnover / std::numbers::pi;
     }
     const Vec2 scaled_foot = scaled_origin_ + foot.x * scaled_u_ + foot.y * scaled_v_;
     // Moments about a foot far outside the domain cancel when they are taken about its centre.
