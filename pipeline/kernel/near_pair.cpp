@@ -88,8 +88,9 @@ double norm2(std::span<const double> values) {
 
 // The nearest singularity of the inner integral as seen along a line through a cell, from 0 to 1.
 struct Singularity {
-    double rate = std::numeric_limits<double>::infinity(); ///< by which Gauss errors fall per degree, >= 1
-    double place = 0.5;                                    ///< its real part, in 0..1
+    double rate =
+        1e9; ///< by which Gauss errors fall per degree, >= 1; none = finite, for quotients of logarithms
+    double place = 0.5;                                        ///< its real part, in 0..1
     double distance = std::numeric_limits<double>::infinity(); ///< of the singular point from the line [m]
 };
 
@@ -256,6 +257,8 @@ private:
 
     // Chooses nodes for both directions. @return  whether they resolve the integrand
     bool foretell(Cell& cell) const {
+        const double area = area_of(cell);
+        if (!(area > 0.0)) return true; // holds nothing
         const Foreteller foreteller(*options_.polygon);
         const auto& c = cell.corners;
         Singularity s, t;
@@ -269,7 +272,7 @@ private:
                                               position(cell.facet, 0.5 * (c[2] + c[3])));
         const double t_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[3])),
                                               position(cell.facet, 0.5 * (c[1] + c[2])));
-        const double wanted = cell.wanted / std::max(area_of(cell), std::numeric_limits<double>::min());
+        const double wanted = cell.wanted / area;
         const bool s_resolved = choose(s, wanted, s_length, cell.s);
         const bool t_resolved = choose(t, wanted, t_length, cell.t);
         return s_resolved && t_resolved;
@@ -342,7 +345,8 @@ private:
             result.push_back(std::move(cell));
             return;
         }
-        cell.wanted = area_of(cell) * wanted / std::sqrt(norm2(cell.values));
+        cell.wanted = area_of(cell) * wanted /
+                      std::max(std::sqrt(norm2(cell.values)), std::numeric_limits<double>::min());
         std::vector<Cell> both;
         for (Cell& part : parts(cell, across_s)) both.push_back(std::move(part));
         for (Cell& part : planned(std::move(both))) result.push_back(std::move(part));

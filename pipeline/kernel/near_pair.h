@@ -52,9 +52,10 @@ struct OuterResult {
 
 /// The outer integral: sum over pieces of integral phi_k(x) gather_l(x) dA, by tensor Gauss products on quadrilateral
 /// cells. Planned cells are cut until the distance of the nearest singularity of the integrand, real or complex, lets few
-/// nodes resolve it in either direction; their error is the tolerance they were planned for. With `refine` errors are
-/// measured: the cell with the largest is divided, across the direction in which the integrand is rougher, until their
-/// sum is below the tolerance.
+/// nodes resolve it in either direction. With `settle` their errors are measured, and cells that hold most of them are
+/// planned anew until the sum is below the tolerance; else the error is the tolerance. With `refine` the cell with the
+/// largest error is divided, across the direction in which the integrand is rougher, until their sum is below the
+/// tolerance.
 /// @param element  the pieces lie on
 /// @param columns  basis size of the inner element
 OuterResult integrate_outer(const geometry::ElementShape& element, std::span<const OuterPiece> pieces,

@@ -9,7 +9,7 @@
 namespace kinelux::validation {
 namespace {
 
-constexpr double tolerance = 1e-3; ///< of the blocks; the same rules in another place make it matter little
+constexpr double tolerance = 1e-3; ///< of the blocks; most pairs get the same rules in any place
 constexpr std::uint64_t pairs = 240, seed = 31;
 constexpr double most_change = 1e-9; ///< relative
 
@@ -32,7 +32,7 @@ Placement turned() {
 }
 
 // Form factors change by less than `most_change`, or by what coordinates rounded by `rounding` [m] change of the gaps.
-// Where symmetric cells tie, rounding may choose between two rules, both within their errors: counted.
+// Where rounding changes a choice of rules both results are within their errors; such pairs are counted.
 // @return  share of the pairs whose form factor stays [1]
 enum class Gaps : std::uint8_t { All, None }; // None: narrow ones, 1e-12 to 1e-1 m, left out
 double share_that_stays(const Placement& placement, double rounding, Gaps gaps) {
