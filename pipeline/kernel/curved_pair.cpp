@@ -91,7 +91,7 @@ std::vector<double> node_product(const ElementShape& a, const ElementShape& b, s
     const NodeSet &xs = a.rules[level], &ys = b.rules[level];
     std::vector<double> kernel(xs.nodes.size() * ys.nodes.size());
     for (std::size_t i = 0, k = 0; i < xs.nodes.size(); ++i)
-        for (const SurfaceNode& y : ys.nodes) kernel[k++] = kernel_value(xs.nodes[i], y);
+        for (const SurfaceNode& y : ys.nodes) kernel[k++] = bounded_kernel(xs.nodes[i], y);
     std::vector<double> values(a.basis.size() * b.basis.size(), 0.0);
     add_node_product(xs, a.basis.size(), ys, b.basis.size(), kernel, values);
     return values;
@@ -152,6 +152,29 @@ std::vector<OuterPiece> pieces_of(const ElementShape& outer, const ElementShape&
     return pieces;
 }
 
+// Each triangle or quadrilateral as four.
+std::vector<OuterPiece> quartered(std::span<const OuterPiece> pieces) {
+    std::vector<OuterPiece> result;
+    for (const auto& [facet, c] : pieces) {
+        const std::size_t n = c.size();
+        if (n > 4) {
+            result.push_back({facet, c});
+            continue;
+        }
+        Vec2 centre(0.0);
+        for (const Vec2& corner : c) centre += corner / static_cast<double>(n);
+        std::vector<Vec2> middles;
+        for (std::size_t i = 0; i < n; ++i) middles.push_back(0.5 * (c[i] + c[(i + 1) % n]));
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vec2 &after = middles[i], &before = middles[(i + n - 1) % n];
+            result.push_back({facet, n == 4 ? std::vector<Vec2>{c[i], after, centre, before}
+                                            : std::vector<Vec2>{c[i], after, before}});
+        }
+        if (n == 3) result.push_back({facet, middles});
+    }
+    return result;
+}
+
 // Whether a node of the other element lies behind a flat one's plane.
 bool cut_by_plane(const ElementShape& flat, const ElementShape& other) {
     const Facet& facet = flat.facets.front();
@@ -192,6 +215,27 @@ public:
     }
 
 private:
+    // Where an element rises over a horizon the integrand bends, which estimates within cells may miss: fine results are
+    // those that hold when the pieces are divided and the tolerance is tightened.
+    OuterResult outer_integral(std::vector<OuterPiece> pieces, PointGather& gather, OuterOptions options) const {
+        const std::size_t columns = inner_.basis.size();
+        OuterResult result = integrate_outer(outer_, pieces, columns, gather, options);
+        if (tolerance_ >= believed) return result;
+        constexpr int most_rounds = 4;
+        for (int round = 0; round < most_rounds; ++round) {
+            pieces = quartered(pieces);
+            options.tolerance *= 0.1;
+            OuterResult finer = integrate_outer(outer_, pieces, columns, gather, options);
+            const double change = difference(finer.values, result.values);
+            const bool settled = change <= 0.5 * tolerance_ * std::max(norm(finer.values), floor_);
+            result = std::move(finer);
+            result.error = std::max(result.error, change);
+            if (settled) break;
+        }
+        return result;
+    }
+
+    static constexpr double believed = 1e-3; ///< tolerance from which on one outer integral is believed
     static constexpr double coarse = 1e-2; ///< tolerance from which on blocks should be cheap
 
     // Limits of a few milliseconds, and of a tenth of that.
@@ -216,7 +260,7 @@ private:
         const std::size_t columns = inner_.basis.size();
         if (pieces.empty()) return {std::vector<double>(outer_.basis.size() * columns, 0.0)};
         OuterOptions options{.tolerance = tolerance_, .floor = floor_, .most_points = most_points()};
-        if (!is_cluster(outer_)) return integrate_outer(outer_, pieces, columns, *gather, options);
+        if (!is_cluster(outer_)) return outer_integral(pieces, *gather, options);
         options.most_points = 8 * pieces.size() + 400;
         return integrate_facets(outer_, pieces, inner_, *gather, options);
     }
@@ -224,7 +268,8 @@ private:
     // Surfaces that cross leave a jump along a line on the outer one: the estimate says what is left of it at the limit.
     std::size_t most_points() const {
         constexpr double points_at_coarse = 1200.0, most = 20000.0;
-        return static_cast<std::size_t>(std::min(points_at_coarse * std::sqrt(coarse / tolerance_), most));
+        return static_cast<std::size_t>(
+            std::min(points_at_coarse * std::sqrt(coarse / tolerance_), most));
     }
 
     std::unique_ptr<PointGather> gather_over(double accuracy) const {

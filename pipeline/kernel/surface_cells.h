@@ -50,6 +50,7 @@ private:
     /// Heights of the samples over the point's horizon, and of the point over theirs [m].
     struct Clearances {
         std::array<double, 7> here, there;
+        double bend_here = 0.0, bend_there = 0.0; ///< how far they may rise above what is linear between samples
     };
     enum class View { None, Whole, Cut };
     /// What is known of a cell from a point.

@@ -383,7 +383,7 @@ private:
         kernel.resize(xs.nodes.size() * columns);
         for (std::size_t i = 0; i < xs.nodes.size(); ++i) {
             const std::span<double> row(&kernel[i * columns], columns);
-            for (std::size_t j = 0; j < columns; ++j) row[j] = kernel_value(xs.nodes[i], ys.nodes[j]);
+            for (std::size_t j = 0; j < columns; ++j) row[j] = bounded_kernel(xs.nodes[i], ys.nodes[j]);
             rays.mask(xs.nodes[i], ys, row);
         }
         add_node_product(xs, a_.basis.size(), ys, b_.basis.size(), kernel, block_.values);
