@@ -46,7 +46,8 @@ public:
     }
     void gather(const SurfaceNode& x, std::span<double> values) override {
         const double height = glm::dot(x.normal, b_.centre - x.position);
-        if (height >= b_.radius) return moments_.gather(x.position, x.normal, flat_whole_, tolerance_, values);
+        if (height >= b_.radius)
+            return moments_.gather(x.position, x.normal, flat_whole_, tolerance_, values);
         std::fill(values.begin(), values.end(), 0.0);
         if (height <= -b_.radius) return;
         above_.clear();
@@ -75,7 +76,8 @@ bool share_a_sphere(const ElementShape& a, const ElementShape& b) {
     if (!a.surface || !b.surface) return false;
     const model::Surface &s = *a.surface, &t = *b.surface;
     return s.type == model::SurfaceType::Sphere && t.type == model::SurfaceType::Sphere &&
-           s.orientation < 0.0 && t.orientation < 0.0 && std::abs(s.radius - t.radius) <= rounding * s.radius &&
+           s.orientation < 0.0 && t.orientation < 0.0 &&
+           std::abs(s.radius - t.radius) <= rounding * s.radius &&
            glm::distance(s.origin, t.origin) <= rounding * (s.radius + glm::length(s.origin));
 }
 
@@ -185,12 +187,16 @@ bool cut_by_plane(const ElementShape& flat, const ElementShape& other) {
 }
 
 // Over clusters facet by facet. A flat element's horizon cuts a curved one in a line along which the integral over the
-// flat one would bend; the integral over the curved one is smooth along the flat one instead. Else the flat one has
-// the cheaper integral, and the smaller one the fewer points.
+// flat one would bend, as it does along a large curved one's own horizon; the integral over the curved one is smooth
+// along the flat one instead. Else the flat one has the cheaper integral, and the smaller one the fewer points.
 bool second_is_outer(const ElementShape& a, const ElementShape& b) {
+    constexpr double small = 0.5; // of the curved one's radius
+    const auto flat_is_outer = [](const ElementShape& flat, const ElementShape& curved) {
+        return flat.radius < small * curved.radius || cut_by_plane(flat, curved);
+    };
     if (is_cluster(a) != is_cluster(b)) return is_cluster(b);
-    if (a.planar) return !cut_by_plane(a, b);
-    if (b.planar) return cut_by_plane(b, a);
+    if (a.planar) return !flat_is_outer(a, b);
+    if (b.planar) return flat_is_outer(b, a);
     return a.radius > b.radius;
 }
 
@@ -217,7 +223,8 @@ public:
 private:
     // Where an element rises over a horizon the integrand bends, which estimates within cells may miss: fine results are
     // those that hold when the pieces are divided and the tolerance is tightened.
-    OuterResult outer_integral(std::vector<OuterPiece> pieces, PointGather& gather, OuterOptions options) const {
+    OuterResult outer_integral(std::vector<OuterPiece> pieces, PointGather& gather,
+                               OuterOptions options) const {
         const std::size_t columns = inner_.basis.size();
         OuterResult result = integrate_outer(outer_, pieces, columns, gather, options);
         if (tolerance_ >= believed) return result;
@@ -236,7 +243,7 @@ private:
     }
 
     static constexpr double believed = 1e-3; ///< tolerance from which on one outer integral is believed
-    static constexpr double coarse = 1e-2; ///< tolerance from which on blocks should be cheap
+    static constexpr double coarse = 1e-2;   ///< tolerance from which on blocks should be cheap
 
     // Limits of a few milliseconds, and of a tenth of that.
     bool worth_every_facet() const {
@@ -268,8 +275,7 @@ private:
     // Surfaces that cross leave a jump along a line on the outer one: the estimate says what is left of it at the limit.
     std::size_t most_points() const {
         constexpr double points_at_coarse = 1200.0, most = 20000.0;
-        return static_cast<std::size_t>(
-            std::min(points_at_coarse * std::sqrt(coarse / tolerance_), most));
+        return static_cast<std::size_t>(std::min(points_at_coarse * std::sqrt(coarse / tolerance_), most));
     }
 
     std::unique_ptr<PointGather> gather_over(double accuracy) const {

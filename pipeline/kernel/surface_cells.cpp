@@ -196,7 +196,8 @@ std::size_t SurfaceCells::rule_for(const Cell& cell, const Look& look) const {
     // The basis is rougher on large cells.
     const int taken = element_.basis.degree() >> cell.depth;
     for (std::size_t rule = 0; rule < rule_count; ++rule)
-        if (amplitude * look.most * std::pow(ratio, std::max(1, rule_degrees[rule] + 1 - taken)) <= cell_accuracy_)
+        if (amplitude * look.most * std::pow(ratio, std::max(1, rule_degrees[rule] + 1 - taken)) <=
+            cell_accuracy_)
             return rule;
     return rule_count;
 }
@@ -275,7 +276,8 @@ void SurfaceCells::add_cut(const Cell& cell, const Look& look, std::size_t rule,
 SurfaceNode SurfaceCells::node_in(const Cell& cell, const std::array<Vec2, 3>& corners,
                                   const std::array<double, 3>& at, double weight, Vec2& parameter) const {
     const Vec2 local = at[0] * corners[0] + at[1] * corners[1] + at[2] * corners[2];
-    SurfaceNode node = geometry::node_at(element_, *cell.facet, {1.0 - local.x - local.y, local.x, local.y}, parameter);
+    SurfaceNode node =
+        geometry::node_at(element_, *cell.facet, {1.0 - local.x - local.y, local.x, local.y}, parameter);
     // node_at's weight is the area per unit of the reference triangle's measure, which is 2 ds dt.
     node.weight *= weight * std::abs(cross(corners[1] - corners[0], corners[2] - corners[0]));
     return node;

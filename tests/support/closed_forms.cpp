@@ -161,7 +161,8 @@ double element_to_sphere(double r, double h, double angle) {
     if (angle >= 0.5 * pi + std::asin(1.0 / d)) return 0.0;
     const double tangent = std::sqrt(d * d - 1.0);
     return 0.5 - std::asin(tangent / (d * std::sin(angle))) / pi +
-           (c * std::acos(-tangent / std::tan(angle)) - tangent * std::sqrt(1.0 - d * d * c * c)) / (pi * d * d);
+           (c * std::acos(-tangent / std::tan(angle)) - tangent * std::sqrt(1.0 - d * d * c * c)) /
+               (pi * d * d);
 }
 
 double sphere_to_rectangle(double a, double b, double d) {

@@ -13,8 +13,8 @@ namespace kinelux::validation {
 struct ClosedFormCase {
     std::string name, source;
     model::PatchSet set;
-    double expected;  ///< [1]
-    double tolerance; ///< relative, at an accuracy of 1e-6
+    double expected;                     ///< [1]
+    double tolerance;                    ///< relative, at an accuracy of 1e-6
     std::vector<std::uint32_t> group_of; ///< group of each patch; empty: each is its own
     std::uint32_t to = 1;                ///< the group that receives; 0 sends
     bool open = false;                   ///< nothing stands between

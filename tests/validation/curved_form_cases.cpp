@@ -33,7 +33,8 @@ Patches sphere(double radius, double orientation, const Vec3& centre = Vec3(0.0)
     s.origin = centre;
     for (int i = 0; i < 4; ++i)
         for (const double v : {-0.5 * pi, 0.0})
-            octants.push_back(support::surface_patch(s, {0.5 * pi * i, v}, {0.5 * pi * (i + 1), v + 0.5 * pi}));
+            octants.push_back(
+                support::surface_patch(s, {0.5 * pi * i, v}, {0.5 * pi * (i + 1), v + 0.5 * pi}));
     return octants;
 }
 
@@ -53,7 +54,8 @@ Patches disc(double radius, double height, double facing) {
 }
 
 // From some patches to others with nothing in between.
-ClosedFormCase open_case(std::string name, std::string source, double expected, Patches from, const Patches& to) {
+ClosedFormCase open_case(std::string name, std::string source, double expected, Patches from,
+                         const Patches& to) {
     ClosedFormCase item{std::move(name), std::move(source), {}, expected, exact};
     item.group_of.assign(from.size(), 0);
     item.to = to.empty() ? 0 : 1;
@@ -67,9 +69,9 @@ ClosedFormCase open_case(std::string name, std::string source, double expected, 
 
 void add_spheres(std::vector<ClosedFormCase>& cases) {
     constexpr double inner = 0.4;
-    cases.push_back(open_case("octant of a sphere to a concentric one of 0.4 of its radius inside", "Howell C-135",
-                              support::outer_sphere_to_inner(inner, 1.0), {sphere(1.0, -1.0)[1]},
-                              sphere(inner, 1.0)));
+    cases.push_back(open_case("octant of a sphere to a concentric one of 0.4 of its radius inside",
+                              "Howell C-135", support::outer_sphere_to_inner(inner, 1.0),
+                              {sphere(1.0, -1.0)[1]}, sphere(inner, 1.0)));
     cases.push_back(open_case("octant of the inner sphere to the outer one", "Howell C-135", 1.0,
                               {sphere(inner, 1.0)[1]}, sphere(1.0, -1.0)));
     const model::Surface inside = round(model::SurfaceType::Sphere, 1.0, -1.0);
@@ -77,18 +79,21 @@ void add_spheres(std::vector<ClosedFormCase>& cases) {
                        zone = support::surface_patch(inside, {0.0, -0.2}, {2.0 * pi, 0.3});
     const double cap_share = 0.5 * (1.0 - std::sin(0.25 * pi)),
                  zone_share = 0.5 * (std::sin(0.3) + std::sin(0.2));
-    cases.push_back(open_case("inside of a sphere, cap to zone", "share of the sphere", zone_share, {cap}, {zone}));
-    cases.push_back(open_case("inside of a sphere, cap to itself", "share of the sphere", cap_share, {cap}, {}));
+    cases.push_back(
+        open_case("inside of a sphere, cap to zone", "share of the sphere", zone_share, {cap}, {zone}));
+    cases.push_back(
+        open_case("inside of a sphere, cap to itself", "share of the sphere", cap_share, {cap}, {}));
     constexpr double s = 1e-4;
     for (const double angle : {0.0, 0.9, 1.5}) {
         const Vec3 tilted(0.0, std::cos(angle), std::sin(angle));
         cases.push_back(open_case(
-            fmt::format("element to a sphere at twice its radius, {:g} from its direction", angle), "Howell B-43",
-            support::element_to_sphere(1.0, 2.0, angle),
+            fmt::format("element to a sphere at twice its radius, {:g} from its direction", angle),
+            "Howell B-43", support::element_to_sphere(1.0, 2.0, angle),
             {support::rectangle({-0.5 * s, 0, 0}, Vec3(s, 0, 0), s * tilted)}, sphere(1.0, 1.0, {0, 0, 2})));
     }
-    cases.push_back(open_case("sphere to a 3 x 1 rectangle at 1.2 of its radius", "solid angle from the centre",
-                              support::sphere_to_rectangle(1.5, 0.5, 1.2), sphere(1.0, 1.0),
+    cases.push_back(open_case("sphere to a 3 x 1 rectangle at 1.2 of its radius",
+                              "solid angle from the centre", support::sphere_to_rectangle(1.5, 0.5, 1.2),
+                              sphere(1.0, 1.0),
                               {support::rectangle({-1.5, -0.5, 1.2}, {0, 1, 0}, {3, 0, 0})}));
 }
 

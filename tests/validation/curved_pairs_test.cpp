@@ -26,7 +26,8 @@ class CurvedPairs : public testing::TestWithParam<double> {};
 TEST_P(CurvedPairs, blocks_keep_the_tolerance_and_their_estimates_are_honest) {
     const double tolerance = GetParam();
     std::vector<CurvedJudgement> all(pairs_asked_for());
-    core::parallel_for(all.size(), [&](std::size_t i) { all[i] = judge_curved(curved_recipe(i, seed), tolerance); });
+    core::parallel_for(all.size(),
+                       [&](std::size_t i) { all[i] = judge_curved(curved_recipe(i, seed), tolerance); });
     double judged = 0.0, within = 0.0, honest = 0.0;
     for (const CurvedJudgement& judgement : all) {
         if (judgement.uncertainty > judge_share * tolerance) continue;
