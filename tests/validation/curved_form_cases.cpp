@@ -89,7 +89,8 @@ void add_spheres(std::vector<ClosedFormCase>& cases) {
         cases.push_back(open_case(
             fmt::format("element to a sphere at twice its radius, {:g} from its direction", angle),
             "Howell B-43", support::element_to_sphere(1.0, 2.0, angle),
-            {support::rectangle({-0.5 * s, 0, 0}, Vec3(s, 0, 0), s * tilted)}, sphere(1.0, 1.0, {0, 0, 2})));
+            {support::rectangle(Vec3(-0.5 * s, 0, 0) - 0.5 * s * tilted, Vec3(s, 0, 0), s * tilted)},
+            sphere(1.0, 1.0, {0, 0, 2})));
     }
     cases.push_back(open_case("sphere to a 3 x 1 rectangle at 1.2 of its radius",
                               "solid angle from the centre", support::sphere_to_rectangle(1.5, 0.5, 1.2),
