@@ -46,7 +46,8 @@ public:
     }
     void gather(const SurfaceNode& x, std::span<double> values) override {
         const double height = glm::dot(x.normal, b_.centre - x.position);
-        if (height >= b_.radius) return moments_.gather(x.position, x.normal, flat_whole_, tolerance_, values);
+        if (height >= b_.radius)
+            return moments_.gather(x.position, x.normal, flat_whole_, tolerance_, values);
         std::fill(values.begin(), values.end(), 0.0);
         if (height <= -b_.radius) return;
         above_.clear();
@@ -75,7 +76,8 @@ bool share_a_sphere(const ElementShape& a, const ElementShape& b) {
     if (!a.surface || !b.surface) return false;
     const model::Surface &s = *a.surface, &t = *b.surface;
     return s.type == model::SurfaceType::Sphere && t.type == model::SurfaceType::Sphere &&
-           s.orientation < 0.0 && t.orientation < 0.0 && std::abs(s.radius - t.radius) <= rounding * s.radius &&
+           s.orientation < 0.0 && t.orientation < 0.0 &&
+           std::abs(s.radius - t.radius) <= rounding * s.radius &&
            glm::distance(s.origin, t.origin) <= rounding * (s.radius + glm::length(s.origin));
 }
 
@@ -91,7 +93,7 @@ std::vector<double> node_product(const ElementShape& a, const ElementShape& b, s
     const NodeSet &xs = a.rules[level], &ys = b.rules[level];
     std::vector<double> kernel(xs.nodes.size() * ys.nodes.size());
     for (std::size_t i = 0, k = 0; i < xs.nodes.size(); ++i)
-        for (const SurfaceNode& y : ys.nodes) kernel[k++] = kernel_value(xs.nodes[i], y);
+        for (const SurfaceNode& y : ys.nodes) kernel[k++] = bounded_kernel(xs.nodes[i], y);
     std::vector<double> values(a.basis.size() * b.basis.size(), 0.0);
     add_node_product(xs, a.basis.size(), ys, b.basis.size(), kernel, values);
     return values;
@@ -152,6 +154,29 @@ std::vector<OuterPiece> pieces_of(const ElementShape& outer, const ElementShape&
     return pieces;
 }
 
+// Each triangle or quadrilateral as four.
+std::vector<OuterPiece> quartered(std::span<const OuterPiece> pieces) {
+    std::vector<OuterPiece> result;
+    for (const auto& [facet, c] : pieces) {
+        const std::size_t n = c.size();
+        if (n > 4) {
+            result.push_back({facet, c});
+            continue;
+        }
+        Vec2 centre(0.0);
+        for (const Vec2& corner : c) centre += corner / static_cast<double>(n);
+        std::vector<Vec2> middles;
+        for (std::size_t i = 0; i < n; ++i) middles.push_back(0.5 * (c[i] + c[(i + 1) % n]));
+        for (std::size_t i = 0; i < n; ++i) {
+            const Vec2 &after = middles[i], &before = middles[(i + n - 1) % n];
+            result.push_back({facet, n == 4 ? std::vector<Vec2>{c[i], after, centre, before}
+                                            : std::vector<Vec2>{c[i], after, before}});
+        }
+        if (n == 3) result.push_back({facet, middles});
+    }
+    return result;
+}
+
 // Whether a node of the other element lies behind a flat one's plane.
 bool cut_by_plane(const ElementShape& flat, const ElementShape& other) {
     const Facet& facet = flat.facets.front();
@@ -162,12 +187,16 @@ bool cut_by_plane(const ElementShape& flat, const ElementShape& other) {
 }
 
 // Over clusters facet by facet. A flat element's horizon cuts a curved one in a line along which the integral over the
-// flat one would bend; the integral over the curved one is smooth along the flat one instead. Else the flat one has
-// the cheaper integral, and the smaller one the fewer points.
+// flat one would bend, as it does along a large curved one's own horizon; the integral over the curved one is smooth
+// along the flat one instead. Else the flat one has the cheaper integral, and the smaller one the fewer points.
 bool second_is_outer(const ElementShape& a, const ElementShape& b) {
+    constexpr double small = 0.5; // of the curved one's radius
+    const auto flat_is_outer = [](const ElementShape& flat, const ElementShape& curved) {
+        return flat.radius < small * curved.radius || cut_by_plane(flat, curved);
+    };
     if (is_cluster(a) != is_cluster(b)) return is_cluster(b);
-    if (a.planar) return !cut_by_plane(a, b);
-    if (b.planar) return cut_by_plane(b, a);
+    if (a.planar) return !flat_is_outer(a, b);
+    if (b.planar) return flat_is_outer(b, a);
     return a.radius > b.radius;
 }
 
@@ -192,7 +221,29 @@ public:
     }
 
 private:
-    static constexpr double coarse = 1e-2; ///< tolerance from which on blocks should be cheap
+    // Where an element rises over a horizon the integrand bends, which estimates within cells may miss: fine results are
+    // those that hold when the pieces are divided and the tolerance is tightened.
+    OuterResult outer_integral(std::vector<OuterPiece> pieces, PointGather& gather,
+                               OuterOptions options) const {
+        const std::size_t columns = inner_.basis.size();
+        OuterResult result = integrate_outer(outer_, pieces, columns, gather, options);
+        if (tolerance_ >= believed) return result;
+        constexpr int most_rounds = 4;
+        for (int round = 0; round < most_rounds; ++round) {
+            pieces = quartered(pieces);
+            options.tolerance *= 0.1;
+            OuterResult finer = integrate_outer(outer_, pieces, columns, gather, options);
+            const double change = difference(finer.values, result.values);
+            const bool settled = change <= 0.5 * tolerance_ * std::max(norm(finer.values), floor_);
+            result = std::move(finer);
+            result.error = std::max(result.error, change);
+            if (settled) break;
+        }
+        return result;
+    }
+
+    static constexpr double believed = 1e-3; ///< tolerance from which on one outer integral is believed
+    static constexpr double coarse = 1e-2;   ///< tolerance from which on blocks should be cheap
 
     // Limits of a few milliseconds, and of a tenth of that.
     bool worth_every_facet() const {
@@ -216,7 +267,7 @@ private:
         const std::size_t columns = inner_.basis.size();
         if (pieces.empty()) return {std::vector<double>(outer_.basis.size() * columns, 0.0)};
         OuterOptions options{.tolerance = tolerance_, .floor = floor_, .most_points = most_points()};
-        if (!is_cluster(outer_)) return integrate_outer(outer_, pieces, columns, *gather, options);
+        if (!is_cluster(outer_)) return outer_integral(pieces, *gather, options);
         options.most_points = 8 * pieces.size() + 400;
         return integrate_facets(outer_, pieces, inner_, *gather, options);
     }

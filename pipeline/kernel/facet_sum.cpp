@@ -189,7 +189,8 @@ private:
     }
 
     static double share_of(const Triangle& triangle) {
-        const Vec2 e = triangle.corners[1] - triangle.corners[0], f = triangle.corners[2] - triangle.corners[0];
+        const Vec2 e = triangle.corners[1] - triangle.corners[0],
+                   f = triangle.corners[2] - triangle.corners[0];
         return std::abs(e.x * f.y - e.y * f.x);
     }
 
@@ -201,7 +202,8 @@ private:
         for (const Vec3& corner : facet.corners) radius = std::max(radius, glm::distance(corner, centre));
         const Vec3 way = inner_.centre - centre;
         const double distance = glm::length(way), apart = distance - inner_.radius;
-        const double scale = (1.0 + outer_.basis.degree()) * share_of(triangle) * facet.area / std::sqrt(outer_.area);
+        const double scale =
+            (1.0 + outer_.basis.degree()) * share_of(triangle) * facet.area / std::sqrt(outer_.area);
         const double most = scale / std::sqrt(inner_.area); // of all that one point can receive
         if (!(apart > 2.0 * radius)) return most;
         const double ratio = radius / apart;
@@ -231,8 +233,7 @@ private:
 
     static void account(const Triangle& triangle, double sign, OuterResult& result) {
         result.error += sign * triangle.error;
-        for (std::size_t k = 0; k < result.values.size(); ++k)
-            result.values[k] += sign * triangle.values[k];
+        for (std::size_t k = 0; k < result.values.size(); ++k) result.values[k] += sign * triangle.values[k];
     }
 
     OuterResult total() const {

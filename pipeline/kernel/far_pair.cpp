@@ -36,6 +36,10 @@ double kernel_value(const SurfaceNode& x, const SurfaceNode& y) {
     return cos_x * cos_y / (std::numbers::pi * r2 * r2);
 }
 
+double bounded_kernel(const SurfaceNode& x, const SurfaceNode& y) {
+    return std::min(kernel_value(x, y), 1.0 / std::max(x.weight, y.weight));
+}
+
 std::optional<FarRule> far_rule(const ElementShape& a, const ElementShape& b, double tolerance) {
     // Measured as the largest of (error / size without cosines) / ratio^(degrees) over random pairs, rounded up.
     const double amplitude = 2.0 + 2.0 * std::max(a.basis.degree(), b.basis.degree());

@@ -12,6 +12,10 @@ namespace kinelux::kernel {
 /// K = cos+ cos'+ / (pi r^2) between two nodes [1/m2].
 double kernel_value(const geometry::SurfaceNode& x, const geometry::SurfaceNode& y);
 
+/// The same with the areas that the nodes stand for, of which neither can receive more than all that leaves the other:
+/// at most 1 / (the larger weight), however close the nodes [1/m2].
+double bounded_kernel(const geometry::SurfaceNode& x, const geometry::SurfaceNode& y);
+
 /// Which of the elements' ready rules resolve the kernel between them.
 struct FarRule {
     std::size_t level_a = 0, level_b = 0; ///< into ElementShape::rules

@@ -64,9 +64,10 @@ std::uint32_t SurfaceCells::add_cell(const Facet& facet, const std::array<Vec2, 
     }
     sample(6, middle, centre_share);
     cell.centre = cell.samples[6].position;
+    constexpr double between = 1.05; // samples
     for (const Sample& s : cell.samples) {
-        cell.radius = std::max(cell.radius, glm::distance(s.position, cell.centre));
-        cell.turn = std::max(cell.turn, glm::distance(s.normal, cell.samples[6].normal));
+        cell.radius = std::max(cell.radius, between * glm::distance(s.position, cell.centre));
+        cell.turn = std::max(cell.turn, between * glm::distance(s.normal, cell.samples[6].normal));
     }
     if (element_.surface->type == model::SurfaceType::BSpline) {
         double area = 0.0;
@@ -124,21 +125,24 @@ SurfaceCells::Look SurfaceCells::look(const Cell& cell, const SurfaceNode& x) co
 
 // Decides by the samples whether a horizon crosses the cell.
 void SurfaceCells::look_closely(const Cell& cell, const SurfaceNode& x, Look& look) const {
-    auto& [here, there] = look.clearances;
+    auto& [here, there, bend_here, bend_there] = look.clearances;
     for (std::size_t i = 0; i < cell.samples.size(); ++i) {
         const Vec3 way = cell.samples[i].position - x.position;
         here[i] = glm::dot(x.normal, way);
         there[i] = -glm::dot(cell.samples[i].normal, way);
     }
-    // How far clearances are from linear: at the middles of the edges and in the centre.
-    constexpr double safety = 1.5;
-    const auto deviation = [](const std::array<double, 7>& c) {
+    // How far clearances are from linear: at the middles of the edges and in the centre, and what those may miss of the
+    // third order.
+    constexpr double safety = 1.5, third_order = 1.0 / 8.0;
+    const double missed = third_order * cell.turn * cell.turn * cell.turn * (look.distance + cell.radius);
+    const auto deviation = [missed](const std::array<double, 7>& c) {
         double worst = std::abs(c[6] - (c[0] + c[1] + c[2]) / 3.0);
         for (std::size_t e = 0; e < 3; ++e)
             worst = std::max(worst, std::abs(c[3 + e] - 0.5 * (c[e] + c[(e + 1) % 3])));
-        return safety * worst;
+        return safety * worst + missed;
     };
-    const double bend_here = deviation(here), bend_there = deviation(there);
+    bend_here = deviation(here);
+    bend_there = deviation(there);
     const auto [low_here, high_here] = std::minmax_element(here.begin(), here.end());
     const auto [low_there, high_there] = std::minmax_element(there.begin(), there.end());
     if (*high_here <= -bend_here || *high_there <= -bend_there) return;
@@ -161,12 +165,13 @@ void SurfaceCells::look_closely(const Cell& cell, const SurfaceNode& x, Look& lo
 // By the largest cosines of the samples where the cell is apart; beside or below the point by the point's cosine alone,
 // for no part of a hemisphere adds more than twice that.
 double SurfaceCells::bound(const Cell& cell, const SurfaceNode& x, const Look& look) const {
-    const auto& [here, there] = look.clearances;
+    const auto& [here, there, bend_here, bend_there] = look.clearances;
     double most_here = 0.0, most_there = 0.0, most_kernel = 0.0;
     for (std::size_t i = 0; i < cell.samples.size(); ++i) {
         const double r = glm::distance(cell.samples[i].position, x.position);
         if (!(r > 0.0)) continue;
-        const double cos_here = std::max(here[i] / r, 0.0), cos_there = std::max(there[i] / r, 0.0);
+        const double cos_here = std::clamp((here[i] + bend_here) / r, 0.0, 1.0),
+                     cos_there = std::clamp((there[i] + bend_there) / r, 0.0, 1.0);
         most_here = std::max(most_here, cos_here);
         most_there = std::max(most_there, cos_there);
         most_kernel = std::max(most_kernel, cos_here * cos_there / (std::numbers::pi * r * r));
@@ -191,7 +196,8 @@ std::size_t SurfaceCells::rule_for(const Cell& cell, const Look& look) const {
     // The basis is rougher on large cells.
     const int taken = element_.basis.degree() >> cell.depth;
     for (std::size_t rule = 0; rule < rule_count; ++rule)
-        if (amplitude * look.most * std::pow(ratio, std::max(1, rule_degrees[rule] + 1 - taken)) <= cell_accuracy_)
+        if (amplitude * look.most * std::pow(ratio, std::max(1, rule_degrees[rule] + 1 - taken)) <=
+            cell_accuracy_)
             return rule;
     return rule_count;
 }
@@ -270,7 +276,8 @@ void SurfaceCells::add_cut(const Cell& cell, const Look& look, std::size_t rule,
 SurfaceNode SurfaceCells::node_in(const Cell& cell, const std::array<Vec2, 3>& corners,
                                   const std::array<double, 3>& at, double weight, Vec2& parameter) const {
     const Vec2 local = at[0] * corners[0] + at[1] * corners[1] + at[2] * corners[2];
-    SurfaceNode node = geometry::node_at(element_, *cell.facet, {1.0 - local.x - local.y, local.x, local.y}, parameter);
+    SurfaceNode node =
+        geometry::node_at(element_, *cell.facet, {1.0 - local.x - local.y, local.x, local.y}, parameter);
     // node_at's weight is the area per unit of the reference triangle's measure, which is 2 ds dt.
     node.weight *= weight * std::abs(cross(corners[1] - corners[0], corners[2] - corners[0]));
     return node;

@@ -36,20 +36,22 @@ private:
     };
     struct Cell {
         const geometry::Facet* facet;
-        std::array<Vec2, 3> corners;       ///< local coordinates of the facet
-        std::array<Sample, 7> samples;     ///< corners, middles of the edges after them, centre
-        Vec3 centre;                       ///< of a sphere around it
-        double radius = 0.0;               ///< [m]
-        double turn = 0.0;                 ///< length of the largest difference of normals from the centre's [1]
-        double area = 0.0;                 ///< by its samples [m2]
-        double roughness = 0.0;            ///< share of the area that its samples and a better rule disagree on
-        int depth = 0;                     ///< of divisions
-        std::uint32_t first_child = 0;     ///< 0: not divided
+        std::array<Vec2, 3> corners;   ///< local coordinates of the facet
+        std::array<Sample, 7> samples; ///< corners, middles of the edges after them, centre
+        Vec3 centre;                   ///< of a sphere around it
+        double radius = 0.0;           ///< [m]
+        double turn = 0.0;             ///< length of the largest difference of normals from the centre's [1]
+        double area = 0.0;             ///< by its samples [m2]
+        double roughness = 0.0;        ///< share of the area that its samples and a better rule disagree on
+        int depth = 0;                 ///< of divisions
+        std::uint32_t first_child = 0; ///< 0: not divided
         std::array<std::uint32_t, rule_count> first_node{}; ///< one past; 0: not made
     };
     /// Heights of the samples over the point's horizon, and of the point over theirs [m].
     struct Clearances {
         std::array<double, 7> here, there;
+        double bend_here = 0.0,
+               bend_there = 0.0; ///< how far they may rise above what is linear between samples
     };
     enum class View { None, Whole, Cut };
     /// What is known of a cell from a point.

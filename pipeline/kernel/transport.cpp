@@ -313,8 +313,9 @@ public:
         const Sight sight = look();
         if (sight == Sight::Hidden) return {};
         const bool flat = a_.planar && b_.planar;
-        const bool kinked = (a_.planar && crosses_horizon(a_, b_)) || (b_.planar && crosses_horizon(b_, a_)) ||
-                            turns_away(a_, b_) || turns_away(b_, a_);
+        const bool kinked = (a_.planar && crosses_horizon(a_, b_)) ||
+                            (b_.planar && crosses_horizon(b_, a_)) || turns_away(a_, b_) ||
+                            turns_away(b_, a_);
         const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
         if (!flat && !rule)
             curved(sight);
@@ -380,8 +381,7 @@ private:
 
     // Curved elements and clusters: all of the block to the tolerance, and of it what rays between nodes find visible.
     void curved(Sight sight) {
-        const double floor =
-            negligible * std::sqrt(std::min(a_.area, b_.area) / std::max(a_.area, b_.area));
+        const double floor = negligible * std::sqrt(std::min(a_.area, b_.area) / std::max(a_.area, b_.area));
         if (sight == Sight::Clear) {
             PairIntegral whole = curved_pair(a_, b_, options_.tolerance, floor);
             block_.values = std::move(whole.values);
@@ -397,8 +397,8 @@ private:
         block_.values.assign(seen.size(), 0.0);
         node_product(a_.rules[level], b_.rules[level], Sight::Clear);
         constexpr double heard = 0.3; // of an error beside that of the sampled share
-        weigh(curved_pair(a_, b_, std::max(options_.tolerance, heard * options_.sight_tolerance), floor), seen,
-              sampling);
+        weigh(curved_pair(a_, b_, std::max(options_.tolerance, heard * options_.sight_tolerance), floor),
+              seen, sampling);
     }
 
     // The whole times the visible share of its constant, plus what nodes say beyond that, scaled to the whole. On entry
@@ -419,7 +419,7 @@ private:
         kernel.resize(xs.nodes.size() * columns);
         for (std::size_t i = 0; i < xs.nodes.size(); ++i) {
             const std::span<double> row(&kernel[i * columns], columns);
-            for (std::size_t j = 0; j < columns; ++j) row[j] = kernel_value(xs.nodes[i], ys.nodes[j]);
+            for (std::size_t j = 0; j < columns; ++j) row[j] = bounded_kernel(xs.nodes[i], ys.nodes[j]);
             rays.mask(xs.nodes[i], ys, row);
         }
         add_node_product(xs, a_.basis.size(), ys, b_.basis.size(), kernel, block_.values);

@@ -155,6 +155,18 @@ double element_to_disc(double r, double h, double a) {
     return 0.5 * (1.0 - (z - 2.0 * ratio * ratio) / std::sqrt(z * z - 4.0 * ratio * ratio));
 }
 
-double element_to_sphere(double r, double h, double angle) { return std::cos(angle) * r * r / (h * h); }
+double element_to_sphere(double r, double h, double angle) {
+    const double d = h / r, c = std::cos(angle);
+    if (angle <= 0.5 * pi - std::asin(1.0 / d)) return c / (d * d);
+    if (angle >= 0.5 * pi + std::asin(1.0 / d)) return 0.0;
+    const double tangent = std::sqrt(d * d - 1.0);
+    return 0.5 - std::asin(tangent / (d * std::sin(angle))) / pi +
+           (c * std::acos(-tangent / std::tan(angle)) - tangent * std::sqrt(1.0 - d * d * c * c)) /
+               (pi * d * d);
+}
+
+double sphere_to_rectangle(double a, double b, double d) {
+    return std::asin(a * b / std::sqrt((a * a + d * d) * (b * b + d * d))) / pi;
+}
 
 } // namespace kinelux::support

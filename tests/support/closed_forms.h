@@ -57,8 +57,12 @@ double element_to_perpendicular_rectangle(double a, double b, double c);
 /// A small plate to a parallel disc of radius r at height h, off its axis by a. @cite B-13
 double element_to_disc(double r, double h, double a);
 
-/// A small plate to a sphere of radius r whose centre is at distance h, wholly above the plate's horizon; angle between
-/// the normal and the centre. @cite B-41
+/// A small plate to a sphere of radius r whose centre is at distance h; angle between the normal and the way to the centre;
+/// also where the plate's horizon cuts the sphere. @cite B-41, B-43
 double element_to_sphere(double r, double h, double angle);
+
+/// A sphere to a rectangle 2a x 2b at distance d from its centre, facing it in the middle, d above the radius: its share of
+/// all directions as seen from the centre. @cite C-108
+double sphere_to_rectangle(double a, double b, double d);
 
 } // namespace kinelux::support

@@ -116,6 +116,15 @@ void add_small(std::vector<ClosedFormCase>& cases) {
                      kernel::polygon_form_factor(below, above).value, flat});
 }
 
+// Polygons in no special position: each in front of the other, and one that reaches behind the other's plane.
+void add_tilted(std::vector<ClosedFormCase>& cases) {
+    const Polygon pentagon{{0, 0, 0}, {1, -0.2, 0}, {1.4, 0.6, 0}, {0.7, 1.2, 0}, {-0.1, 0.8, 0}};
+    const Polygon triangle{{0.1, 0.2, 0.5}, {0.3, 1.4, 0.9}, {1.5, 0.1, 1.3}};
+    cases.push_back({"pentagon and tilted triangle", "double contour integral",
+                     patches({support::polygon_patch(pentagon), support::polygon_patch(triangle)}),
+                     kernel::polygon_form_factor(pentagon, triangle).value, flat});
+}
+
 // The part of one convex polygon in another, both in one plane z = constant, counter-clockwise from above.
 Polygon common_part(Polygon polygon, std::span<const Vec3> window) {
     for (std::size_t i = 0; i < window.size() && !polygon.empty(); ++i) {
@@ -180,22 +189,25 @@ std::vector<ClosedFormCase> closed_form_cases() {
     add_perpendicular(cases);
     add_hinges(cases);
     add_small(cases);
+    add_tilted(cases);
     add_hidden(cases);
+    for (ClosedFormCase& item : curved_form_cases()) cases.push_back(std::move(item));
     return cases;
 }
 
 double computed_factor(const ClosedFormCase& item, double accuracy) {
     const auto scene = support::plain_scene(item.set.patches.size());
     const auto shapes = geometry::element_shapes(item.set, support::whole_patch_elements(item.set), 2, 0);
-    const auto occluders = support::occluders_of(item.set, scene);
+    const visibility::Occluders occluders(item.open ? std::vector<visibility::Body>()
+                                                    : visibility::bodies_of(item.set, scene));
     const auto blocks = coefficients::compute_coefficients(
         shapes, scene, {.degree = 2}, occluders,
         {.tolerance = accuracy, .sight_tolerance = std::max(accuracy, 1e-4), .most_blockers = 16}, 1e6);
-    std::vector<std::uint32_t> group_of;
-    for (std::uint32_t e = 0; e < shapes.size(); ++e) group_of.push_back(e);
-    const auto groups = static_cast<std::uint32_t>(shapes.size());
+    std::vector<std::uint32_t> group_of = item.group_of;
+    for (auto e = static_cast<std::uint32_t>(group_of.size()); e < shapes.size(); ++e) group_of.push_back(e);
+    const std::uint32_t groups = *std::max_element(group_of.begin(), group_of.end()) + 1;
     for (const auto& factor : coefficients::form_factors(blocks, shapes, group_of, groups))
-        if (factor.from == 0 && factor.to == 1) return factor.value;
+        if (factor.from == 0 && factor.to == item.to) return factor.value;
     return 0.0;
 }
 

@@ -55,7 +55,7 @@ Quat turn_between(const Vec3& from, const Vec3& to) {
 }
 
 model::Surface random_surface(Dice& dice, ElementKind kind) {
-    static constexpr std::array types{SurfaceType::Cylinder, SurfaceType::Cone,    SurfaceType::Sphere,
+    static constexpr std::array types{SurfaceType::Cylinder, SurfaceType::Cone,     SurfaceType::Sphere,
                                       SurfaceType::Torus,    SurfaceType::Bilinear, SurfaceType::BSpline};
     model::Surface s =
         support::tilted_surface(types[static_cast<std::size_t>(kind)], dice.below(3) == 0 ? 1.0 : -1.0);
@@ -175,7 +175,8 @@ ElementShape random_element(Dice& dice, ElementKind kind) {
 CurvedPair neighbours(Dice& dice, ElementKind kind) {
     if (kind == ElementKind::Cluster) {
         const SmallBody body = random_body(dice);
-        return {cluster_of(body, 0, body.half, 0), cluster_of(body, body.half, body.small.triangles.size(), 0)};
+        return {cluster_of(body, 0, body.half, 0),
+                cluster_of(body, body.half, body.small.triangles.size(), 0)};
     }
     const model::Surface surface = random_surface(dice, kind);
     const auto parts = random_parts(dice, surface);
@@ -188,7 +189,8 @@ CurvedPair neighbours(Dice& dice, ElementKind kind) {
 SurfaceNode random_point(Dice& dice, const ElementShape& shape, bool corner) {
     const auto& nodes = shape.rules.back().nodes;
     SurfaceNode point = nodes[static_cast<std::size_t>(dice.below(static_cast<int>(nodes.size())))];
-    const auto& facet = shape.facets[static_cast<std::size_t>(dice.below(static_cast<int>(shape.facets.size())))];
+    const auto& facet =
+        shape.facets[static_cast<std::size_t>(dice.below(static_cast<int>(shape.facets.size())))];
     if (corner) point.position = facet.corners[static_cast<std::size_t>(dice.below(3))];
     return point;
 }
@@ -200,7 +202,7 @@ ElementShape placed(Dice& dice, const ElementShape& a, const ElementShape& rest,
     const bool touching = place == Place::Touching;
     const SurfaceNode at = random_point(dice, a, false), from = random_point(dice, rest, touching);
     const double size = std::min(size_of(a), size_of(rest));
-    const double gap = touching             ? 0.0
+    const double gap = touching              ? 0.0
                        : place == Place::Far ? size * dice.between(2.0, 6.0)
                                              : size * dice.decades(-1.7, 0.0);
     const Vec3 sideways = touching ? Vec3(0.0) : 0.5 * gap * dice.direction();
@@ -239,7 +241,8 @@ public:
         for (const support::FlatPiece& piece : pieces_) {
             if (!(piece.plane.height(x.position) > 0.0)) continue;
             const support::FlatPiece front = support::in_front(piece, horizon);
-            if (!front.parts.empty()) support::PointIntegral(front, b_.basis).add(x.position, x.normal, values);
+            if (!front.parts.empty())
+                support::PointIntegral(front, b_.basis).add(x.position, x.normal, values);
         }
     }
 
@@ -320,8 +323,7 @@ CurvedJudgement judge_curved(const CurvedRecipe& recipe, double tolerance) {
     static const visibility::Occluders nothing{std::vector<visibility::Body>()};
     const CurvedPair pair = make_curved_pair(recipe);
     const ElementShape &a = pair.a, &b = pair.itself ? pair.a : pair.b;
-    CurvedJudgement judgement{
-        .recipe = recipe, .degree_a = a.basis.degree(), .degree_b = b.basis.degree()};
+    CurvedJudgement judgement{.recipe = recipe, .degree_a = a.basis.degree(), .degree_b = b.basis.degree()};
     double start = processor_time();
     const auto block = kernel::transport(a, b, nothing, {.tolerance = tolerance, .occlusion = false});
     judgement.seconds = processor_time() - start;
@@ -368,14 +370,16 @@ std::string curved_report(std::span<const CurvedJudgement> judgements, double to
         if (ratios.empty()) return;
         std::sort(ratios.begin(), ratios.end());
         const double n = static_cast<double>(ratios.size());
-        text += fmt::format("{:<10} {:<10} {:>5} {:>7} {:>7} {:>9.2e} {:>9.2e} {:>8.3f} {:>8.1f}\n", kind, place,
-                            ratios.size(), within, honest, ratios[ratios.size() / 2], ratios.back(),
+        text += fmt::format("{:<10} {:<10} {:>5} {:>7} {:>7} {:>9.2e} {:>9.2e} {:>8.3f} {:>8.1f}\n", kind,
+                            place, ratios.size(), within, honest, ratios[ratios.size() / 2], ratios.back(),
                             1e3 * seconds / n, 1e3 * reference / n);
     };
     for (std::size_t kind = 0; kind < 7; ++kind)
-        row(element_kind_names[kind], "", [&](auto& j) { return static_cast<std::size_t>(j.recipe.a) == kind; });
+        row(element_kind_names[kind], "",
+            [&](auto& j) { return static_cast<std::size_t>(j.recipe.a) == kind; });
     for (std::size_t place = 0; place < place_names.size(); ++place)
-        row("", place_names[place], [&](auto& j) { return static_cast<std::size_t>(j.recipe.place) == place; });
+        row("", place_names[place],
+            [&](auto& j) { return static_cast<std::size_t>(j.recipe.place) == place; });
     row("all", "", [](auto&) { return true; });
     std::vector<const CurvedJudgement*> order;
     for (const CurvedJudgement& j : judgements) order.push_back(&j);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curved_pairs.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+
+namespace kinelux::validation {
+namespace {
+
+// KINELUX_PAIRS=1120 judges as many pairs per tolerance as docs/validation.md says; few are enough to notice a change.
+std::size_t pairs_asked_for() {
+    const char* asked = std::getenv("KINELUX_PAIRS");
+    return asked != nullptr ? std::stoull(asked) : 112;
+}
+
+constexpr std::uint64_t seed = 1;
+constexpr double least_within = 0.97, least_honest = 0.99, least_judged = 0.9;
+constexpr double judge_share = 0.3; ///< of a tolerance that a reference may be off for it
+
+class CurvedPairs : public testing::TestWithParam<double> {};
+
+TEST_P(CurvedPairs, blocks_keep_the_tolerance_and_their_estimates_are_honest) {
+    const double tolerance = GetParam();
+    std::vector<CurvedJudgement> all(pairs_asked_for());
+    core::parallel_for(all.size(),
+                       [&](std::size_t i) { all[i] = judge_curved(curved_recipe(i, seed), tolerance); });
+    double judged = 0.0, within = 0.0, honest = 0.0;
+    for (const CurvedJudgement& judgement : all) {
+        if (judgement.uncertainty > judge_share * tolerance) continue;
+        judged += 1.0;
+        within += judgement.proved_error() <= tolerance ? 1.0 : 0.0;
+        honest += 3.0 * judgement.estimate >= judgement.proved_error() ? 1.0 : 0.0;
+    }
+    EXPECT_GE(judged, least_judged * static_cast<double>(all.size())) << curved_report(all, tolerance, 8);
+    EXPECT_GE(within, least_within * judged) << curved_report(all, tolerance, 8);
+    EXPECT_GE(honest, least_honest * judged) << curved_report(all, tolerance, 8);
+}
+
+INSTANTIATE_TEST_SUITE_P(tolerances, CurvedPairs, testing::Values(1e-2, 1e-3));
+
+} // namespace
+} // namespace kinelux::validation
