@@ -46,8 +46,10 @@ public:
     }
     void gather(const SurfaceNode& x, std::span<double> values) override {
         const double height = glm::dot(x.normal, b_.centre - x.position);
-        if (height >= b_.radius)
-            return moments_.gather(x.position, x.normal, flat_whole_, tolerance_, values);
+        if (height >= b_.radius) {
+            moments_.gather(x.position, x.normal, flat_whole_, tolerance_, values);
+            return;
+        }
         std::fill(values.begin(), values.end(), 0.0);
         if (height <= -b_.radius) return;
         above_.clear();
