@@ -177,10 +177,12 @@ public:
             if (options_.refine) ask_for_measuring(cell);
             evaluate(cell);
         }
-        if (options_.refine)
+        if (options_.refine) {
+            divide_dark_cells();
             refine();
-        else if (options_.settle)
+        } else if (options_.settle) {
             settle();
+        }
 
         OuterResult result;
         result.values = sum_of_cells();
@@ -200,6 +202,28 @@ private:
     }
 
     static bool smaller_error(const Cell& a, const Cell& b) { return a.error() < b.error(); }
+
+    // A cell whose nodes all see nothing may hold points that do: it is divided before it is believed.
+    void divide_dark_cells() {
+        constexpr int halvings = 4;
+        constexpr std::size_t most_cells = 16; // more of them are small already
+        if (cells_.size() > most_cells) return;
+        for (int halving = 0; halving < halvings; ++halving) {
+            std::vector<Cell> next;
+            for (Cell& cell : cells_) {
+                if (norm2(cell.values) > 0.0) {
+                    next.push_back(std::move(cell));
+                    continue;
+                }
+                for (const auto& corners : divided(cell.corners, halving % 2 == 0, 0.5)) {
+                    next.push_back(cell);
+                    next.back().corners = corners;
+                    evaluate(next.back());
+                }
+            }
+            cells_ = std::move(next);
+        }
+    }
 
     static void append_cells(const OuterPiece& piece, std::vector<Cell>& cells) {
         const std::vector<Vec2>& p = piece.corners;

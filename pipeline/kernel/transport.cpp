@@ -456,7 +456,7 @@ private:
             outer_options.tolerance = options_.sight_tolerance;
             outer_options.refine = true;
             outer_options.floor = 0.1 * std::sqrt(outer.area / inner.area);
-            outer_options.most_points = 4000;
+            outer_options.most_points = 60000;
             PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(),
                                        gather_share * options_.sight_tolerance);
             result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
