@@ -509,7 +509,7 @@ private:
         double before = 0.0;
         for (std::size_t k = (count - 1) / 2; k + 2 < count; ++k) before = std::max(before, norms_[k]);
         const double seen = count >= 5 && before > 0.0 ? std::min(1.0, highest / before) : 1.0;
-        constexpr double safety = 2.0;
+        constexpr double safety = 4.0;
         return safety * highest * std::min(fall, seen);
     }
 

@@ -159,6 +159,25 @@ std::vector<OuterPiece> cut_below_edges(std::vector<OuterPiece> pieces, const Lo
     return pieces;
 }
 
+double area_of(const OuterPiece& piece) {
+    double twice = 0.0;
+    for (std::size_t i = 2; i < piece.corners.size(); ++i) {
+        const Vec2 e = piece.corners[i - 1] - piece.corners[0], f = piece.corners[i] - piece.corners[0];
+        twice += e.x * f.y - e.y * f.x;
+    }
+    return std::abs(twice) * piece.facet->area;
+}
+
+// A point of a piece, towards its corner of that number.
+SurfaceNode probe(const ElementShape& outer, const OuterPiece& piece, std::size_t corner) {
+    constexpr double outwards = 0.6;
+    Vec2 centre(0.0);
+    for (const Vec2& at : piece.corners) centre += at / static_cast<double>(piece.corners.size());
+    const Vec2 at = glm::mix(centre, piece.corners[corner % piece.corners.size()], outwards);
+    Vec2 parameter;
+    return geometry::node_at(outer, *piece.facet, {1.0 - at.x - at.y, at.x, at.y}, parameter);
+}
+
 // All of a polygon is visible.
 class WholePolygon : public PointGather {
 public:
@@ -176,25 +195,36 @@ public:
     double error(const ElementShape& outer, const ElementShape& inner) const {
         if (gathered_ == 0) return 0.0;
         const double functions = static_cast<double>(inner.basis.size());
-        return std::sqrt(uncertainty2_ / gathered_ * functions * outer.area / inner.area);
+        return std::hypot(std::sqrt(uncertainty2_ / gathered_ * functions * outer.area / inner.area),
+                          measured_);
     }
 
-    /// Gathers at a few points of the outer element, and asks for more of the edges where they cancel.
+    /// Gathers at a few points of the outer pieces, twice, and asks for more of the edges where they cancel or differ.
     /// @param allowed  error of a block, relative to its norm or `floor`
-    void tighten(const ElementShape& outer, const ElementShape& inner, double allowed, double floor) {
+    void tighten(const ElementShape& outer, const ElementShape& inner, std::span<const OuterPiece> pieces,
+                 double allowed, double floor) {
         constexpr std::size_t probes = 4;
-        constexpr double finest = 1e-14;
-        const NodeSet& xs = outer.rules[0];
-        std::vector<double> values(inner.basis.size());
-        double sum2 = 0.0;
-        const std::size_t count = std::min(probes, xs.nodes.size());
-        for (std::size_t k = 0; k < count; ++k) {
-            gather(xs.nodes[k * xs.nodes.size() / count], values);
-            for (const double value : values) sum2 += value * value;
+        constexpr double finer = 1e-3, finest = 1e-14, safety = 3.0;
+        const std::size_t size = inner.basis.size();
+        std::vector<double> values(size), better(size);
+        double sum2 = 0.0, difference2 = 0.0;
+        for (std::size_t k = 0; k < probes; ++k) {
+            const SurfaceNode x = probe(outer, pieces[k * pieces.size() / probes], k);
+            gather(x, values);
+            moments_.gather(x.position, x.normal, flat_, std::max(finer * tolerance_, finest), better);
+            for (std::size_t l = 0; l < size; ++l) {
+                sum2 += better[l] * better[l];
+                difference2 += (values[l] - better[l]) * (values[l] - better[l]);
+            }
         }
-        const double norm = std::sqrt(outer.area * sum2 / static_cast<double>(count));
-        const double excess = error(outer, inner) / (allowed * std::max(norm, floor));
+        double area = 0.0;
+        for (const OuterPiece& piece : pieces) area += area_of(piece);
+        const double per_probe = area / static_cast<double>(probes);
+        const double wanted = allowed * std::max(std::sqrt(per_probe * sum2), floor);
+        const double differing = safety * std::sqrt(per_probe * difference2);
+        const double excess = std::max(error(outer, inner), differing) / wanted;
         if (excess > 1.0) tolerance_ = std::max(tolerance_ / excess, finest);
+        measured_ = differing / std::max(excess, 1.0);
         uncertainty2_ = gathered_ = 0.0;
     }
 
@@ -203,6 +233,7 @@ private:
     Loops2 flat_;
     double tolerance_;
     double uncertainty2_ = 0.0, gathered_ = 0.0; ///< sums over points
+    double measured_ = 0.0;                      ///< error of a block, from the points of tighten
 };
 
 // A few polygons stand before it.
@@ -449,7 +480,7 @@ private:
         OuterResult result;
         if (sight == Sight::Clear) {
             WholePolygon gather(inner, loops, gather_tolerance);
-            gather.tighten(outer, inner, gather_tolerance, outer_options.floor);
+            gather.tighten(outer, inner, pieces, gather_tolerance, outer_options.floor);
             result = integrate_outer(outer, pieces, inner.basis.size(), gather, outer_options);
             result.error += gather.error(outer, inner);
         } else if (sight == Sight::Few && options_.exact_sight) {
