@@ -86,16 +86,18 @@ bool ExpandedPair::holds(const ElementShape& rest_a, const ElementShape& rest_b,
     if (!facing_ || !(least_distance_ > 0.0)) return false;
     const Bounds error = bounds(rest_a, rest_b, options.order);
     if (!std::isfinite(error.whole)) return false;
-    const bool printed = options.rule == ExpansionRule::Printed;
+    if (options.rule == ExpansionRule::Certified)
+        return error.translation <= options.translation_tolerance &&
+               error.whole - error.translation <= options.rotation_quality;
+    const auto condition =
+        options.rule == ExpansionRule::Printed ? rotation_condition_printed : rotation_condition_scale_free;
     for (const Turning end : both_ends) {
         const double angle = track_->turn(end).angle;
         if (!(angle > 0.0)) continue;
         const double arm = track_->arm(end, end == Turning::First ? rest_a : rest_b);
-        const auto condition = printed ? rotation_condition_printed : rotation_condition_scale_free;
         if (!condition(least_distance_, arm, angle, options.rotation_quality)) return false;
     }
-    return printed ? series_condition(least_distance_, track_->stairs().length())
-                   : error.translation <= options.translation_tolerance;
+    return series_condition(least_distance_, track_->stairs().length());
 }
 
 // The visible share, and the size of what bounds are relative to.

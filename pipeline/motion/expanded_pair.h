@@ -16,14 +16,15 @@ namespace kinelux::motion {
 /// When an expansion is given up and the block computed anew.
 enum class ExpansionRule : std::uint8_t {
     Printed,   ///< (14) and (20) of the publication, with its lengths in metres
-    Certified, ///< the proven bounds of the error, which know no unit
+    ScaleFree, ///< (14), and (20) as it is without a unit of length
+    Certified, ///< proven bounds of the error: of the translation, and of what turns add to it
 };
 
 struct ExpansionOptions {
     int order = 6; ///< of the translation series, 1..16; the publication's choice
     ExpansionRule rule = ExpansionRule::Printed;
     double translation_tolerance = 1e-2; ///< Certified: of the kernel in units of 1/(pi r^2) [1], >= 0
-    double rotation_quality = 0.1;       ///< S of (20), in both rules [1], >= 0
+    double rotation_quality = 0.1; ///< S of (20); Certified: as translation_tolerance, of turns [1], >= 0
 };
 
 /// What one pair of elements keeps from the time its block was last computed, its reference, and the expansion from there.
@@ -55,7 +56,7 @@ public:
 private:
     struct Bounds {
         double translation; ///< of the staircase's series and its distance from the path
-        double whole;       ///< with turns and what is missing between turns and translation
+        double whole;       ///< with turns, and what is missing between turns and translation
     };
     Bounds bounds(const geometry::ElementShape& rest_a, const geometry::ElementShape& rest_b,
                   int order) const;

@@ -28,8 +28,9 @@ Pose turn_about(const Vec3& pivot, const Vec3& axis, double angle) {
 // Unit squares that face each other across a gap, tilted so that no symmetry helps.
 std::vector<ElementShape> facing_squares(double gap, int degree, double scale = 1.0) {
     model::PatchSet set;
-    set.patches = {support::rectangle(Vec3(0), scale * Vec3(1, 0, 0), scale * Vec3(0, 1, 0)),
-                   support::rectangle(scale * Vec3(0.2, 0.1, gap), scale * Vec3(0, 1, 0), scale * Vec3(1, 0, 0))};
+    set.patches = {
+        support::rectangle(Vec3(0), scale * Vec3(1, 0, 0), scale * Vec3(0, 1, 0)),
+        support::rectangle(scale * Vec3(0.2, 0.1, gap), scale * Vec3(0, 1, 0), scale * Vec3(1, 0, 0))};
     auto shapes = support::shapes_of(set, 1, degree);
     shapes[1] = geometry::moved(shapes[1], turn_about(shapes[1].centre, Vec3(1, 0.5, 0), 0.2));
     return shapes;
@@ -110,10 +111,11 @@ TEST(RotationSeries, nine_coefficients_of_a_planar_surface_say_what_three_do) {
 }
 
 TEST(RotationSeries, nine_coefficients_are_exact_for_normals_of_a_curved_surface) {
-    // A sphere's piece turns in place: the exact change with r' = r is the projected kernel with turned normals.
+    // A piece of a sphere turns in place: with r' = r the change is that of the kernel with turned normals.
     model::PatchSet set;
     set.patches = {support::rectangle(Vec3(-0.5, -0.5, -3), Vec3(1, 0, 0), Vec3(0, 1, 0)),
-                   support::curved_patch(support::sphere_surface(Vec3(0), 0.5), Vec2(-0.3, -1.2), Vec2(0.3, -0.6))};
+                   support::surface_patch(support::tilted_surface(model::SurfaceType::Sphere),
+                                          Vec2(0.2, -0.3), Vec2(0.9, 0.4))};
     const auto shapes = support::shapes_of(set, 1, 1);
     const ElementShape& a = shapes[0];
     const ElementShape& b = shapes[1];
@@ -145,7 +147,8 @@ TEST(RotationSeries, reaches_about_as_far_as_the_table_in_mathematics_says) {
     const auto shapes = facing_squares(1.5, 1);
     const double spin = reach_deg(shapes[0], shapes[1], shapes[1].centre, Vec3(1, 0.3, 0.2), 1e-2);
     const double finer = reach_deg(shapes[0], shapes[1], shapes[1].centre, Vec3(1, 0.3, 0.2), 1e-3);
-    const double orbit = reach_deg(shapes[0], shapes[1], shapes[1].centre + Vec3(0, 2, 0), Vec3(1, 0.3, 0.2), 1e-2);
+    const double orbit =
+        reach_deg(shapes[0], shapes[1], shapes[1].centre + Vec3(0, 2, 0), Vec3(1, 0.3, 0.2), 1e-2);
     printf("1 %% reach: spin %.2f deg, orbit %.2f deg; 0.1 %%: spin %.2f deg\n", spin, orbit, finer);
     EXPECT_GT(spin, 1.0);
     EXPECT_LT(spin, 9.0);
@@ -181,7 +184,8 @@ TEST(RotationSeries, scale_free_condition_bounds_the_error_of_the_kernel_at_poin
     constexpr double S = 0.1;
     int admitted = 0;
     for (int trial = 0; trial < 20000; ++trial) {
-        const Vec3 x(0.0), y = direction(), pivot = y + 0.3 * direction(), n_i = direction(), n_j = direction();
+        const Vec3 x(0.0), y = direction(), pivot = y + 0.3 * direction(), n_i = direction(),
+                           n_j = direction();
         const Pose turn = turn_about(pivot, direction(), 0.3 * uniform(generator));
         const double angle = glm::angle(turn.rotation);
         if (!rotation_condition_scale_free(1.0, glm::distance(y, pivot), angle, S)) continue;

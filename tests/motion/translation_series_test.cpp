@@ -51,8 +51,7 @@ TEST(TranslationSeries, error_stays_below_the_proven_tail_for_any_geometry) {
         const Vec3 r = distance * random.direction();
         const Vec3 p0 = trial % 4 == 0 ? random.perpendicular_to(r) : random.direction();
         const int order = static_cast<int>(random.between(1.0, 16.999));
-        const double error =
-            series_error(r, random.direction(), random.direction(), p0, t * distance, order);
+        const double error = series_error(r, random.direction(), random.direction(), p0, t * distance, order);
         EXPECT_LE(error, series_tail(t, order) * (1.0 + 1e-9) + rounding / ((1 - t) * (1 - t)))
             << "trial " << trial << " t " << t << " order " << order;
     }
@@ -112,8 +111,8 @@ TEST(TranslationSeries, condition_14_admits_the_errors_of_the_table_in_mathemati
     };
     const double t = 1.0 / (1.0 + std::numbers::sqrt2);
     const Vec3 e(0.0, 0.0, 1.0);
-    for (const Row& row : {Row{2, 5.7e-1}, Row{4, 1.4e-1}, Row{6, 3.1e-2}, Row{8, 6.6e-3}, Row{12, 2.7e-4},
-                           Row{16, 9.9e-6}}) {
+    for (const Row& row :
+         {Row{2, 5.7e-1}, Row{4, 1.4e-1}, Row{6, 3.1e-2}, Row{8, 6.6e-3}, Row{12, 2.7e-4}, Row{16, 9.9e-6}}) {
         const double met = series_error(e, e, e, -e, t, row.order);
         printf("order %2d: (14) admits %.3g\n", row.order, met);
         EXPECT_NEAR(met, row.admitted, 0.03 * row.admitted) << row.order;
@@ -162,38 +161,6 @@ TEST(TranslationSeries, sums_over_several_axes_stay_below_their_bound) {
     }
     printf("largest share of the bound %.2f\n", closest);
     EXPECT_GT(closest, 0.1) << "a bound that nothing comes near says little";
-}
-
-TEST(Staircase, axes_are_the_26_directions_of_a_cube_in_pairs) {
-    const auto& axes = predefined_axes();
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-        EXPECT_NEAR(glm::length(axes[a]), 1.0, 1e-15);
-        for (std::size_t b = 0; b < a; ++b)
-            EXPECT_LT(std::abs(glm::dot(axes[a], axes[b])), std::cos(0.6)) << a << " " << b;
-    }
-}
-
-TEST(Staircase, stays_within_a_step_of_a_bent_path_and_sums_its_steps) {
-    Staircase stairs;
-    Vec3 path(0.0), before(0.0);
-    for (int frame = 1; frame <= 200; ++frame) {
-        const double s = 0.03 * frame;
-        path = Vec3(std::sin(s), 1.0 - std::cos(s), 0.3 * s);
-        stairs.follow(path, 1, 1e-12);
-        EXPECT_LT(glm::distance(path, stairs.position()), glm::distance(path, before)) << frame;
-        before = path;
-    }
-    Vec3 sum(0.0);
-    for (std::size_t a = 0; a < axis_count; ++a) sum += stairs.steps()[a] * predefined_axes()[a];
-    EXPECT_LT(glm::distance(sum, stairs.position()), 1e-12);
-    EXPECT_GE(stairs.length(), glm::length(stairs.position()));
-}
-
-TEST(Staircase, a_path_along_an_axis_is_followed_exactly_by_one_move) {
-    Staircase stairs;
-    stairs.follow(Vec3(-0.3, 0.3, 0.0), 1, 1e-12);
-    EXPECT_LT(glm::distance(stairs.position(), Vec3(-0.3, 0.3, 0.0)), 1e-15);
-    EXPECT_NEAR(stairs.length(), 0.3 * std::numbers::sqrt2, 1e-15);
 }
 
 } // namespace
