@@ -44,15 +44,18 @@ void ExpandedPair::reset(kernel::TransportBlock block, const ElementShape& a, co
     facing_ = wholly_facing(a, b);
     least_distance_ = least_distance(a, b);
     normals_ = {a.mean_normal, b.mean_normal};
-    for (auto& blocks : translations_) blocks.clear();
-    for (auto& blocks : rotations_) blocks.clear();
+    terms_.clear();
 }
 
-std::size_t ExpandedPair::sets() const {
-    const auto count = [](const auto& all) {
-        return std::count_if(all.begin(), all.end(), [](const auto& blocks) { return !blocks.empty(); });
-    };
-    return static_cast<std::size_t>(count(translations_) + count(rotations_));
+bool ExpandedPair::needs(std::size_t expansion) const {
+    if (expansion < axis_count) return track_->stairs().steps()[expansion] != 0.0;
+    return track_->turn(expansion == turn_of(Turning::First) ? Turning::First : Turning::Second).angle > 0.0;
+}
+
+const std::vector<double>* ExpandedPair::find(std::size_t expansion) const {
+    for (const Terms& terms : terms_)
+        if (terms.expansion == expansion) return &terms.blocks;
+    return nullptr;
 }
 
 // With r' the true and s the staircase's place, n' the turned and n the old normals, the expansion is
@@ -122,26 +125,24 @@ void ExpandedPair::measure(const PairNodes& nodes) {
 
 void ExpandedPair::complete(const ElementShape& rest_a, const ElementShape& rest_b,
                             const ExpansionOptions& options, double tolerance) {
-    const auto walks = [&](std::size_t axis) {
-        return track_->stairs().steps()[axis] != 0.0 && translations_[axis].empty();
-    };
-    const auto turns = [&](Turning end) {
-        return track_->turn(end).angle > 0.0 && rotations_[end == Turning::First ? 0 : 1].empty();
-    };
-    bool lacking = !measured_ || turns(Turning::First) || turns(Turning::Second);
-    for (std::size_t axis = 0; axis < axis_count; ++axis) lacking = lacking || walks(axis);
-    if (!lacking) return;
+    std::vector<std::size_t> lacking;
+    for (std::size_t expansion = 0; expansion < axis_count + both_ends.size(); ++expansion)
+        if (needs(expansion) && find(expansion) == nullptr) lacking.push_back(expansion);
+    if (measured_ && lacking.empty()) return;
 
     const Placed a(rest_a, track_->reference(Turning::First)), b(rest_b, track_->reference(Turning::Second));
     const PairNodes nodes(*a, *b, tolerance);
     if (!measured_) measure(nodes);
-    for (std::size_t axis = 0; axis < axis_count; ++axis)
-        if (walks(axis))
-            translations_[axis] = translation_blocks(nodes, predefined_axes()[axis], options.order);
-    for (const Turning end : both_ends)
-        if (turns(end))
-            rotations_[end == Turning::First ? 0 : 1] =
-                rotation_blocks(nodes, end, (end == Turning::First ? rest_a : rest_b).planar);
+    for (const std::size_t expansion : lacking) {
+        if (expansion < axis_count) {
+            terms_.push_back(
+                {expansion, translation_blocks(nodes, predefined_axes()[expansion], options.order)});
+            continue;
+        }
+        const bool first = expansion == turn_of(Turning::First);
+        terms_.push_back({expansion, rotation_blocks(nodes, first ? Turning::First : Turning::Second,
+                                                     (first ? rest_a : rest_b).planar)});
+    }
 }
 
 kernel::TransportBlock ExpandedPair::block(const ElementShape& rest_a, const ElementShape& rest_b,
@@ -153,14 +154,13 @@ kernel::TransportBlock ExpandedPair::block(const ElementShape& rest_a, const Ele
     if (block.values.empty()) block.values.assign(rest_a.basis.size() * rest_b.basis.size(), 0.0);
     const Staircase& stairs = track_->stairs();
     for (std::size_t axis = 0; axis < axis_count; ++axis)
-        if (stairs.steps()[axis] != 0.0)
-            add_translation(translations_[axis], stairs.steps()[axis], share_, block.values);
+        if (needs(axis)) add_translation(*find(axis), stairs.steps()[axis], share_, block.values);
     double turned = 0.0;
     for (const Turning end : both_ends) {
+        if (!needs(turn_of(end))) continue;
         const Turn& turn = track_->turn(end);
-        if (!(turn.angle > 0.0)) continue;
-        const std::size_t e = end == Turning::First ? 0 : 1;
-        add_rotation(rotations_[e], turn.R, normals_[e], share_, block.values);
+        add_rotation(*find(turn_of(end)), turn.R, normals_[end == Turning::First ? 0 : 1], share_,
+                     block.values);
         turned += turn.change_of_normals();
     }
     const double walked = std::min(stairs.length() / least_distance_, 1.0);

@@ -51,7 +51,7 @@ public:
 
     bool clear() const { return clear_; }
     /// Sets of coefficients computed since the reference.
-    std::size_t sets() const;
+    std::size_t sets() const { return terms_.size(); }
 
 private:
     struct Bounds {
@@ -60,6 +60,15 @@ private:
     };
     Bounds bounds(const geometry::ElementShape& rest_a, const geometry::ElementShape& rest_b,
                   int order) const;
+    /// Coefficients of one expansion: an axis by its number, then the turn of the first and of the second body.
+    struct Terms {
+        std::size_t expansion;
+        std::vector<double> blocks;
+    };
+    static constexpr std::size_t turn_of(Turning end) { return axis_count + (end == Turning::First ? 0 : 1); }
+    /// Whether the motion since the reference calls for an expansion.
+    bool needs(std::size_t expansion) const;
+    const std::vector<double>* find(std::size_t expansion) const;
     void complete(const geometry::ElementShape& rest_a, const geometry::ElementShape& rest_b,
                   const ExpansionOptions& options, double tolerance);
     void measure(const PairNodes& nodes);
@@ -71,9 +80,8 @@ private:
     double share_ = 0.0;          ///< visible at the reference, 0..1
     double size_ = 0.0;           ///< Frobenius norm that a kernel of 1/(pi r^2) would have at most [1]
     NodeError node_error_;
-    std::array<Vec3, 2> normals_{};                            ///< mean normals at the reference
-    std::array<std::vector<double>, axis_count> translations_; ///< phi_1.. per axis; empty: not computed
-    std::array<std::vector<double>, 2> rotations_;             ///< per turning end
+    std::array<Vec3, 2> normals_{}; ///< mean normals at the reference
+    std::vector<Terms> terms_;      ///< those computed, in the order in which they were first needed
 };
 
 } // namespace kinelux::motion

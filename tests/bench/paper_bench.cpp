@@ -134,11 +134,11 @@ void compare(const char* name, LampRoom room, int n, std::uint32_t frames) {
     }
 }
 
-// What one pair's block takes: computed, its coefficients, and expanded from them. Unit squares across a gap of 1.5.
-void print_costs(int degree) {
+// What one pair's block takes: computed, its coefficients, and expanded from them. Unit squares across a gap.
+void print_costs(double gap, int degree) {
     model::PatchSet set;
     set.patches = {support::rectangle(Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0)),
-                   support::rectangle(Vec3(0.2, 0.1, 1.5), Vec3(0, 1, 0), Vec3(1, 0, 0))};
+                   support::rectangle(Vec3(0.2, 0.1, gap), Vec3(0, 1, 0), Vec3(1, 0, 0))};
     const auto shapes = support::shapes_of(set, 1, degree);
     const visibility::Occluders none({});
     const motion::PairNodes nodes(shapes[0], shapes[1], 1e-3);
@@ -157,9 +157,8 @@ void print_costs(int degree) {
     const double rotation =
         microseconds([&] { motion::rotation_blocks(nodes, motion::Turning::Second, true); });
     const double expanded = microseconds([&] { motion::add_translation(series, 0.1, 1.0, values); });
-    printf("degree %d: block %.2f us; in its units: six orders %.1f, three rotation coefficients %.1f, "
-           "expansion %.3f\n",
-           degree, block, translation / block, rotation / block, expanded / block);
+    printf("gap %.1f, degree %d: block %.2f us; in its units: six orders %.1f, turn %.1f, expansion %.4f\n",
+           gap, degree, block, translation / block, rotation / block, expanded / block);
 }
 
 } // namespace
@@ -171,7 +170,8 @@ int main(int argc, char** argv) {
     const int n = argc > 1 ? std::atoi(argv[1]) : 5;
     const auto frames = static_cast<std::uint32_t>(argc > 2 ? std::atoi(argv[2]) : 41);
     core::set_thread_count(1);
-    for (int degree = 0; degree <= 3; ++degree) print_costs(degree);
+    for (const double gap : {1.5, 6.0})
+        for (int degree = 0; degree <= 3; ++degree) print_costs(gap, degree);
     struct Scene {
         const char* name;
         std::vector<model::Keyframe> keys;

@@ -50,7 +50,7 @@ TEST(PairGeometry, bounds_hold_at_all_nodes_of_random_pairs) {
                         smallest = std::min(smallest, kernel::kernel_value(x, y));
                     }
                 EXPECT_LE(least_distance(a, b), nearest);
-                EXPECT_EQ(least_distance(a, b), least_distance(b, a));
+                EXPECT_DOUBLE_EQ(least_distance(a, b), least_distance(b, a));
                 EXPECT_TRUE(!wholly_facing(a, b) || smallest > 0.0);
                 facing += wholly_facing(a, b) ? 1 : 0;
                 apart += least_distance(a, b) > 0.3 * nearest ? 1 : 0;
