@@ -105,8 +105,12 @@ void print(const char* name, const Run& r, double exact_ms) {
            100.0 * r.mean_error, 100.0 * r.worst_error);
 }
 
-void compare(const char* name, LampRoom room, int n, std::uint32_t frames) {
+enum class Shadows { Cast, None };
+
+void compare(const char* name, LampRoom room, Shadows shadows, int n, std::uint32_t frames) {
+    room.plan.moving_occlusion = shadows == Shadows::Cast;
     PreparedRoom p(std::move(room), n);
+    p.options.occlusion = shadows == Shadows::Cast;
     printf("%s: %zu elements of degree %d, %zu moving and %zu crossed pairs\n", name, p.shapes.size(),
            p.room.plan.degree, p.coefficients.moving_pairs.size(), p.coefficients.crossed_pairs.size());
     const Run exact = run(p, {}, frames, nullptr);
@@ -176,14 +180,17 @@ int main(int argc, char** argv) {
         const char* name;
         std::vector<model::Keyframe> keys;
         Shelf shelf;
+        Shadows shadows = Shadows::Cast;
     };
-    for (const Scene& scene : {Scene{"lamp slides along an axis", motion::slide(), Shelf::None},
+    for (const Scene& scene : {Scene{"lamp slides along an axis, nothing casts shadows", motion::slide(),
+                                     Shelf::None, Shadows::None},
+                               Scene{"lamp slides along an axis", motion::slide(), Shelf::None},
                                Scene{"lamp on a bent path", motion::bend(), Shelf::None},
                                Scene{"lamp turns in place", motion::spin(), Shelf::None},
                                Scene{"lamp slides and turns", motion::spin_and_slide(), Shelf::None},
                                Scene{"lamp slides, shelf slides below it", motion::slide(), Shelf::Moving}}) {
         LampRoom room(scene.keys, scene.shelf);
         if (argc > 3) room.plan.degree = std::atoi(argv[3]);
-        compare(scene.name, std::move(room), n, frames);
+        compare(scene.name, std::move(room), scene.shadows, n, frames);
     }
 }

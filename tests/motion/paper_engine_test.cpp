@@ -159,6 +159,22 @@ TEST(PaperEngine, blocks_differ_from_the_exact_ones_by_less_than_the_errors_they
         }
 }
 
+TEST(PaperEngine, a_curved_body_that_turns_stays_within_its_errors) {
+    LampRoom room(spin_and_slide());
+    model::Surface cap;
+    cap.type = model::SurfaceType::Sphere;
+    cap.origin = Vec3(0.4, 1.0, 1.7);
+    cap.radius = 0.2;
+    room.set.patches[6].surface = cap;
+    room.set.patches[6].points = {Vec2(0, -1.3), Vec2(1.5, -1.3), Vec2(1.5, -0.8), Vec2(0, -0.8)};
+    PreparedRoom p(std::move(room), 2);
+    ASSERT_FALSE(p.shapes.back().planar);
+    p.options.occlusion = false; // the chords of a curved patch hide its own elements
+    std::uint64_t expanded = 0;
+    EXPECT_LT(worst_against_errors(p, with(ExpansionRule::ScaleFree, PaperOcclusion::Exact), expanded), 1.0);
+    EXPECT_GT(expanded, 100u);
+}
+
 TEST(PaperEngine, exact_occlusion_keeps_blocks_within_their_errors_behind_a_moving_shelf) {
     PreparedRoom p(LampRoom(slide(), Shelf::Moving), 2);
     std::uint64_t expanded = 0;
