@@ -82,11 +82,12 @@ ExpandedPair::Bounds ExpandedPair::bounds(const ElementShape& rest_a, const Elem
             series + turned * series_tail(s / r, 0) + turn_a * turn_b + displaced(track_->lag() + sweep)};
 }
 
-bool ExpandedPair::holds(const ElementShape& rest_a, const ElementShape& rest_b,
+bool ExpandedPair::holds(bool facing, const ElementShape& rest_a, const ElementShape& rest_b,
                          const ExpansionOptions& options) const {
     if (!track_) return false;
     if (track_->still()) return true;
-    if (!facing_ || !(least_distance_ > 0.0)) return false;
+    if (options.horizons == Horizons::Refresh && !(facing && facing_)) return false;
+    if (!(least_distance_ > 0.0)) return false;
     const Bounds error = bounds(rest_a, rest_b, options.order);
     if (!std::isfinite(error.whole)) return false;
     if (options.rule == ExpansionRule::Certified)

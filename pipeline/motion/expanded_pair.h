@@ -20,9 +20,17 @@ enum class ExpansionRule : std::uint8_t {
     Certified, ///< proven bounds of the error: of the translation, and of what turns add to it
 };
 
+/// What becomes of a pair of which a part is behind the other's horizon. The series know no clamps, and the publication
+/// does not mention them.
+enum class Horizons : std::uint8_t {
+    Refresh, ///< computed anew in every frame
+    Kept, ///< points that faced each other at the reference are expanded, the others stay dark; errors do not hold this
+};
+
 struct ExpansionOptions {
     int order = 6; ///< of the translation series, 1..16; the publication's choice
     ExpansionRule rule = ExpansionRule::Printed;
+    Horizons horizons = Horizons::Refresh;
     double translation_tolerance = 1e-2; ///< Certified: of the kernel in units of 1/(pi r^2) [1], >= 0
     double rotation_quality = 0.1; ///< S of (20); Certified: as translation_tolerance, of turns [1], >= 0
 };
@@ -37,9 +45,9 @@ public:
     void reset(kernel::TransportBlock block, const geometry::ElementShape& a, const geometry::ElementShape& b,
                bool clear, std::shared_ptr<const PairTrack> track);
 
-    /// Whether the expansion may be used where the track now stands: both elements wholly faced each other at the
-    /// reference (the series know no clamps), and the conditions hold. @param rest_a, rest_b  at rest
-    bool holds(const geometry::ElementShape& rest_a, const geometry::ElementShape& rest_b,
+    /// Whether the expansion may be used where the track now stands. @param facing  both elements now wholly face each
+    /// other; @param rest_a, rest_b  at rest
+    bool holds(bool facing, const geometry::ElementShape& rest_a, const geometry::ElementShape& rest_b,
                const ExpansionOptions& options) const;
 
     /// The block where the track now stands. Computes what coefficients it lacks, once per axis and turning body.

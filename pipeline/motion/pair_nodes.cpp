@@ -12,6 +12,11 @@ namespace kinelux::motion {
 using geometry::ElementShape;
 using geometry::SurfaceNode;
 
+bool face_each_other(const SurfaceNode& x, const SurfaceNode& y) {
+    const Vec3 r = y.position - x.position;
+    return glm::dot(x.normal, r) > 0.0 && glm::dot(y.normal, r) < 0.0;
+}
+
 double facing_kernel(const SurfaceNode& x, const SurfaceNode& y) {
     const Vec3 r = y.position - x.position;
     const double r2 = glm::dot(r, r);

@@ -20,8 +20,8 @@ struct NodeError {
     double of_move(double t) const;
 };
 
-/// Products of the ready nodes of two elements that wholly face each other: one set of nodes for a kernel and for all
-/// terms of its expansion.
+/// Products of the ready nodes of two elements, of those that face each other: one set for a kernel and for all terms of
+/// its expansion.
 class PairNodes {
 public:
     /// The cheapest rules that resolve the kernel, or the finest where none does.
@@ -32,9 +32,10 @@ public:
     std::size_t block_size() const { return na_ * nb_; } ///< size(a) x size(b)
 
     /// By the rules' bound, or where the elements are too close for one the difference from the rules one level coarser.
+    /// Of elements that wholly face each other.
     const NodeError& error() const { return error_; }
 
-    /// Integrals of phi_k(x) f_m(x, y) phi_l(y) for several functions f_m at once.
+    /// Integrals of phi_k(x) f_m(x, y) phi_l(y) for several functions f_m at once, over nodes that face each other.
     /// @param at  called with the node of a, the node of b, and the values f_0.. to be set
     /// @return    terms x size(a) x size(b)
     template <typename Function>
@@ -53,6 +54,9 @@ private:
     NodeError error_;
 };
 
+/// Whether two nodes are each in front of the other.
+bool face_each_other(const geometry::SurfaceNode& x, const geometry::SurfaceNode& y);
+
 /// K = -(n_x.r)(n_y.r) / (pi r^4), without clamps [1/m2]: the kernel of nodes that face each other.
 double facing_kernel(const geometry::SurfaceNode& x, const geometry::SurfaceNode& y);
 
@@ -63,6 +67,7 @@ std::vector<double> PairNodes::project(const geometry::NodeSet& xs, const geomet
     for (std::size_t i = 0; i < xs.nodes.size(); ++i) {
         gathered.assign(gathered.size(), 0.0);
         for (std::size_t j = 0; j < ys.nodes.size(); ++j) {
+            if (!face_each_other(xs.nodes[i], ys.nodes[j])) continue;
             at(xs.nodes[i], ys.nodes[j], std::span<double>(values));
             for (std::size_t m = 0; m < terms; ++m) {
                 const double weighted = values[m] * ys.nodes[j].weight;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "motion/pair_geometry.h"
 #include "motion/posed_elements.h"
 #include "motion/translation_series.h"
 #include "visibility/pair_blockers.h"
@@ -154,7 +155,7 @@ PaperEngine::Slot PaperEngine::update(std::size_t k, const ElementShape& a, cons
         if (sight == Sight::Hidden) return {};
     }
     const bool sees_as_before = !exact || (sight == Sight::Clear && pair.clear());
-    if (sees_as_before && pair.holds(rest_a, rest_b, paper_.expansion)) {
+    if (sees_as_before && pair.holds(wholly_facing(a, b), rest_a, rest_b, paper_.expansion)) {
         const std::size_t before = pair.sets();
         kernel::TransportBlock block = pair.block(rest_a, rest_b, paper_.expansion, options_.tolerance);
         return {Origin::Expanded, std::move(block), pair.sets() - before};

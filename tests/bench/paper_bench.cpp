@@ -100,7 +100,7 @@ Run run(PreparedRoom& p, const std::optional<PaperOptions>& options, std::uint32
 }
 
 void print(const char* name, const Run& r, double exact_ms) {
-    printf("  %-34s %8.2f ms %5.2fx %8.0f anew %8.0f expanded %6.0f sets  error %.3f %% (max %.3f %%)\n",
+    printf("  %-36s %8.2f ms %5.2fx %8.0f anew %8.0f expanded %6.0f sets  error %.3f %% (max %.3f %%)\n",
            name, r.ms_per_frame, exact_ms / r.ms_per_frame, r.refreshed, r.expanded, r.sets,
            100.0 * r.mean_error, 100.0 * r.worst_error);
 }
@@ -118,19 +118,22 @@ void compare(const char* name, LampRoom room, Shadows shadows, int n, std::uint3
     struct Variant {
         const char* name;
         ExpansionRule rule;
+        motion::Horizons horizons;
         PaperOcclusion occlusion;
-        int moves, order;
+        int moves;
     };
-    for (const Variant& v :
-         {Variant{"printed, publication's occlusion", ExpansionRule::Printed, PaperOcclusion::Publication, 1,
-                  6},
-          Variant{"printed, exact occlusion", ExpansionRule::Printed, PaperOcclusion::Exact, 1, 6},
-          Variant{"scale-free, exact occlusion", ExpansionRule::ScaleFree, PaperOcclusion::Exact, 1, 6},
-          Variant{"certified, exact occlusion", ExpansionRule::Certified, PaperOcclusion::Exact, 1, 6},
-          Variant{"certified, exact, 4 moves", ExpansionRule::Certified, PaperOcclusion::Exact, 4, 6}}) {
+    using enum ExpansionRule;
+    using enum motion::Horizons;
+    const auto as_published = PaperOcclusion::Publication, exact_sight = PaperOcclusion::Exact;
+    for (const Variant& v : {Variant{"printed, kept horizons, publication", Printed, Kept, as_published, 1},
+                             Variant{"printed, publication's occlusion", Printed, Refresh, as_published, 1},
+                             Variant{"printed, exact occlusion", Printed, Refresh, exact_sight, 1},
+                             Variant{"scale-free, exact occlusion", ScaleFree, Refresh, exact_sight, 1},
+                             Variant{"certified, exact occlusion", Certified, Refresh, exact_sight, 1},
+                             Variant{"certified, exact, 4 moves", Certified, Refresh, exact_sight, 4}}) {
         PaperOptions options;
         options.expansion.rule = v.rule;
-        options.expansion.order = v.order;
+        options.expansion.horizons = v.horizons;
         options.occlusion = v.occlusion;
         options.moves_per_frame = v.moves;
         options.sources = {MaterialId(1)};

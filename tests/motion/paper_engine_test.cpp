@@ -175,6 +175,19 @@ TEST(PaperEngine, a_curved_body_that_turns_stays_within_its_errors) {
     EXPECT_GT(expanded, 100u);
 }
 
+TEST(PaperEngine, pairs_cut_by_a_horizon_are_within_their_errors_only_when_computed_anew) {
+    // The lamp tilts by 4 degrees per frame: its plane sweeps over the walls.
+    const std::vector<model::Keyframe> tilt{key(0.0, Vec3(0)), key(1.0, Vec3(0), 2.8, Vec3(0, 1, 0))};
+    PreparedRoom p(LampRoom(tilt), 4);
+    PaperOptions options = with(ExpansionRule::ScaleFree, PaperOcclusion::Exact);
+    options.expansion.rotation_quality = 0.5;
+    std::uint64_t expanded = 0, with_kept = 0;
+    EXPECT_LT(worst_against_errors(p, options, expanded), 1.0);
+    options.expansion.horizons = Horizons::Kept;
+    EXPECT_GT(worst_against_errors(p, options, with_kept), 1.0);
+    EXPECT_GT(with_kept, expanded);
+}
+
 TEST(PaperEngine, exact_occlusion_keeps_blocks_within_their_errors_behind_a_moving_shelf) {
     PreparedRoom p(LampRoom(slide(), Shelf::Moving), 2);
     std::uint64_t expanded = 0;
