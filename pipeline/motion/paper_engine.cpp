@@ -97,7 +97,7 @@ bool PaperEngine::shadows_exactly(const ElementPair& pair) const {
 }
 
 FrameBlocks PaperEngine::advance(double time_s, std::span<const geometry::Pose> poses) {
-    const FrameBlocks crossed = crossed_engine_.advance(time_s, poses); // moves the occluders
+    FrameBlocks crossed = crossed_engine_.advance(time_s, poses); // moves the occluders
     counts_ = {};
     if (plan_.moving_objects.empty()) return crossed;
     const PosedElements elements(rest_, plan_, poses);
