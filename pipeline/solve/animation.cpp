@@ -4,21 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "geometry/pose.h"
 #include "model/hierarchy.h"
+#include "solve/vectors.h"
 
 namespace kinelux::solve {
 
 namespace {
 
 using model::FrameSolution;
-
-double square_sum(std::span<const double> values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
-    return sum;
-}
 
 /// How the elements reflect. Where all channels are proportional only the first is solved, and `scale` leads back to the
 /// others.
@@ -231,52 +227,100 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     return result;
 }
 
+namespace {
+
+/// The frames of one animation: what they have in common, and what changes from one to the next.
+class Frames {
+public:
+    Frames(const Animation& animation, motion::Engine& engine, const SolveOptions& options)
+        : animation_(animation),
+          engine_(engine),
+          surfaces_(surfaces_of(animation)),
+          solver_(surfaces_.channels, surfaces_.reflectance, {animation.areas.begin(), animation.areas.end()},
+                  options),
+          blocks_(animation.coefficients.layout, animation.coefficients.static_blocks),
+          linked_(blocks_, animation.coefficients.hierarchy) {}
+
+    /// Brings engine and solver to where they were after the frames that are done.
+    void take_up(std::span<const FrameSolution> done, model::SolverState state) {
+        const std::size_t first = engine_.remembers() ? 0 : done.size() - 1;
+        for (std::size_t f = first; f < done.size(); ++f) advance(done[f].time_s);
+        if (!state.empty()) solver_.restore(std::move(state), transport());
+    }
+
+    FrameSolution solve(std::uint32_t number, double time_s) {
+        const std::vector<model::BlockEntry> entries = advance(time_s);
+        const std::vector<double> exitance = exitance_of(animation_, surfaces_.channels);
+        FrameSolution frame = animation_.plan.bounces == 0 ? direct_only(transport(), surfaces_, exitance)
+                                                           : solver_.solve_frame(transport(), exitance);
+        const model::Coefficients& coefficients = animation_.coefficients;
+        frame.frame = number;
+        frame.time_s = time_s;
+        frame.blocks_recomputed = recomputed_;
+        frame.element_error = irradiance_errors(coefficients.layout, entries, animation_.areas, exitance,
+                                                frame, surfaces_.channels, coefficients.hierarchy);
+        frame.error_estimate = radiosity_error(coefficients.layout, surfaces_, animation_.areas, frame);
+        spread_channels(surfaces_, frame);
+        return frame;
+    }
+
+    const model::SolverState& state() const { return solver_.state(); }
+
+private:
+    const TransportOperator& transport() const {
+        if (animation_.coefficients.hierarchy.empty()) return blocks_;
+        return linked_;
+    }
+
+    /// The blocks of a time. @return  the entries of all of them
+    std::vector<model::BlockEntry> advance(double time_s) {
+        motion::FrameBlocks changed =
+            engine_.advance(time_s, geometry::object_poses(animation_.scene, time_s));
+        recomputed_ = static_cast<std::uint32_t>(changed.computed);
+        std::vector<model::BlockEntry> entries = entries_at(animation_.coefficients.static_blocks, changed);
+        blocks_.replace(changed.pairs, std::move(changed.blocks));
+        return entries;
+    }
+
+    const Animation& animation_;
+    motion::Engine& engine_;
+    const Surfaces surfaces_;
+    TemporalSolver solver_;
+    BlockOperator blocks_;
+    const LinkedOperator linked_;
+    std::uint32_t recomputed_ = 0;
+};
+
+} // namespace
+
 model::Solution solve_animation(const Animation& animation, motion::Engine& engine,
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
-                                const std::function<void(const FrameSolution&)>& progress) {
-    const model::Coefficients& coefficients = animation.coefficients;
-    const Surfaces surfaces = surfaces_of(animation);
-    TemporalSolver solver(surfaces.channels, surfaces.reflectance,
-                          {animation.areas.begin(), animation.areas.end()}, options);
-    BlockOperator blocks(coefficients.layout, coefficients.static_blocks);
-    const LinkedOperator linked(blocks, coefficients.hierarchy);
-    const TransportOperator& transport =
-        coefficients.hierarchy.empty() ? static_cast<const TransportOperator&>(blocks) : linked;
-    model::Solution solution{.layout = coefficients.layout,
+                                const std::function<void(const FrameSolution&)>& progress,
+                                Checkpoint checkpoint) {
+    model::Solution solution{.layout = animation.coefficients.layout,
                              .channels = static_cast<std::uint32_t>(animation.scene.channels.size()),
-                             .frames = {}};
-    for (const std::uint32_t number : frames) {
+                             .frames = std::move(checkpoint.from.solution.frames)};
+    const bool moves = !animation.plan.moving_objects.empty();
+    Frames all(animation, engine, options);
+    if (moves && !solution.frames.empty()) all.take_up(solution.frames, std::move(checkpoint.from.state));
+    for (const std::uint32_t number : frames.subspan(solution.frames.size())) {
         const auto started = std::chrono::steady_clock::now();
         const double time_s = animation.scene.time.time_of_frame(number);
-        if (animation.plan.moving_objects.empty() && !solution.frames.empty()) {
+        if (!moves && !solution.frames.empty()) {
             // Nothing moves: the first frame is every frame.
             FrameSolution same = solution.frames.front();
             same.frame = number;
             same.time_s = time_s;
-            same.sweeps = 0;
+            same.sweeps = 0.0;
             same.seconds = 0.0;
-            progress(same);
             solution.frames.push_back(std::move(same));
-            continue;
+        } else {
+            solution.frames.push_back(all.solve(number, time_s));
+            solution.frames.back().seconds =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
         }
-        const motion::FrameBlocks changed =
-            engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
-        blocks.replace(changed.pairs, changed.blocks);
-
-        const std::vector<double> exitance = exitance_of(animation, surfaces.channels);
-        FrameSolution frame = animation.plan.bounces == 0 ? direct_only(transport, surfaces, exitance)
-                                                          : solver.solve_frame(transport, exitance);
-        frame.frame = number;
-        frame.time_s = time_s;
-        frame.blocks_recomputed = static_cast<std::uint32_t>(changed.computed);
-        frame.element_error =
-            irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
-                              animation.areas, exitance, frame, surfaces.channels, coefficients.hierarchy);
-        frame.error_estimate = radiosity_error(coefficients.layout, surfaces, animation.areas, frame);
-        spread_channels(surfaces, frame);
-        frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-        progress(frame);
-        solution.frames.push_back(std::move(frame));
+        if (checkpoint.save) checkpoint.save(solution, all.state());
+        progress(solution.frames.back());
     }
     return solution;
 }

@@ -268,6 +268,7 @@ TEST_F(CaseFolderTest, solution_comes_back_exactly_without_its_seconds) {
         EXPECT_EQ(a.sweeps, b.sweeps);
         EXPECT_EQ(a.residual, b.residual);
         EXPECT_EQ(a.unshot, b.unshot);
+        EXPECT_EQ(a.solver_error, b.solver_error);
         EXPECT_EQ(a.error_estimate, b.error_estimate);
         EXPECT_TRUE(same_bits(a.element_error, b.element_error));
         EXPECT_EQ(a.converged, b.converged);

@@ -78,9 +78,9 @@ TEST(Animation, a_scene_at_rest_is_solved_once_for_all_frames) {
     room.scene.time = {0.0, 2.0, 3};
     const auto frames = room.solve({0, 1, 2}).frames;
     ASSERT_EQ(frames.size(), 3u);
-    EXPECT_GT(frames[0].sweeps, 0u);
+    EXPECT_GT(frames[0].sweeps, 0.0);
     for (const std::uint32_t f : {1u, 2u}) {
-        EXPECT_EQ(frames[f].sweeps, 0u);
+        EXPECT_EQ(frames[f].sweeps, 0.0);
         EXPECT_EQ(frames[f].radiosity, frames[0].radiosity);
         EXPECT_EQ(frames[f].frame, f);
         EXPECT_EQ(frames[f].time_s, f);
