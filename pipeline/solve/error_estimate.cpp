@@ -38,6 +38,14 @@ void reflect(const System& system, std::span<const double> shape, std::vector<do
     system.transport.apply(system.channels, sent, image);
 }
 
+/// Scales every channel to a norm of one.
+void normalize(std::size_t channels, std::vector<double>& shape) {
+    const std::vector<double> squares = channel_dots(channels, shape, shape);
+    for (std::size_t k = 0; k < shape.size(); k += channels)
+        for (std::size_t c = 0; c < channels; ++c)
+            if (squares[c] > 0.0) shape[k + c] /= std::sqrt(squares[c]);
+}
+
 } // namespace
 
 std::vector<double> returned_shares(const System& system, const DominantMode& mode) {
@@ -61,6 +69,7 @@ DominantMode dominant_mode(const System& system, std::vector<double> from, std::
     std::vector<double> last(system.channels, 0.0), last_step(system.channels, 1.0);
     for (int step = 1; step <= most; ++step) {
         if (step > 1) mode.shape = mode.image;
+        normalize(system.channels, mode.shape);
         reflect(system, mode.shape, mode.image);
         ++products;
         std::fill(mode.margin.begin(), mode.margin.end(), 0.0);
@@ -88,7 +97,8 @@ ErrorEstimate::ErrorEstimate(const System& system, const DominantMode& mode)
       mode_(mode),
       returned_(returned_shares(system, mode)),
       mode_square_(reflected_dots(system, mode.shape, mode.shape)),
-      mode_size_(system.channels, 0.0) {
+      mode_size_(system.channels, 0.0),
+      kept_(mode_square_) {
     constexpr double dark = 1e-6; // of ||M||
     const auto& layout = system.transport.layout();
     counts_.assign(layout.elements(), true);
@@ -102,26 +112,56 @@ ErrorEstimate::ErrorEstimate(const System& system, const DominantMode& mode)
         if (counts_[m / system.channels]) mode_size_[c] += u * u;
     });
     for (double& size : mode_size_) size = std::sqrt(size);
+    const std::vector<double> returned = reflected_dots(system, mode.shape, mode.image);
+    for (std::size_t c = 0; c < system.channels; ++c) kept_[c] -= returned[c];
     least_size_ = dark * std::sqrt(square_sum(system.exitance));
 }
 
-double ErrorEstimate::of(std::span<const double> residual, std::span<const double> radiosity) const {
+ErrorEstimate::Parts ErrorEstimate::parts(std::span<const double> residual,
+                                          std::span<const double> radiosity) const {
     const std::size_t channels = system_.channels;
     std::vector<double> part = channel_dots(channels, mode_.shape, residual), rest(channels, 0.0);
     for (std::size_t c = 0; c < channels; ++c) part[c] = ratio(part[c], mode_square_[c]);
-    double size = 0.0, error = 0.0;
+    double size = 0.0;
     for_each_coefficient(
         system_.transport.layout(), channels, [&](std::size_t k, std::size_t m, std::size_t c) {
             const double left = residual[k] - part[c] * system_.reflectance[m] * mode_.shape[k];
             rest[c] += left * left;
             if (counts_[m / channels]) size += radiosity[k] * radiosity[k];
         });
+    Parts parts{.size = std::max(std::sqrt(size), least_size_)};
     for (std::size_t c = 0; c < channels; ++c) {
-        const double of_channel = std::abs(part[c]) * mode_size_[c] / (1.0 - returned_[c]) +
-                                  std::sqrt(rest[c]) / (1.0 - returned_[c] * mode_.second[c]);
-        error += of_channel * of_channel;
+        const double of_mode = std::abs(part[c]) * mode_size_[c] / (1.0 - returned_[c]);
+        const double of_rest = std::sqrt(rest[c]) / (1.0 - returned_[c] * mode_.second[c]);
+        parts.of_mode += of_mode * of_mode;
+        parts.of_rest += of_rest * of_rest;
     }
-    return std::sqrt(error) / std::max(std::sqrt(size), least_size_);
+    return parts;
+}
+
+double ErrorEstimate::of(std::span<const double> residual, std::span<const double> radiosity) const {
+    const Parts found = parts(residual, radiosity);
+    return (std::sqrt(found.of_mode) + std::sqrt(found.of_rest)) / found.size;
+}
+
+double ErrorEstimate::of_rest(std::span<const double> residual, std::span<const double> radiosity) const {
+    const Parts found = parts(residual, radiosity);
+    return std::sqrt(found.of_rest) / found.size;
+}
+
+void ErrorEstimate::take_mode_out(SystemSolution& solution) const {
+    const std::size_t channels = system_.channels;
+    std::vector<double> part(channels, 0.0);
+    for (std::size_t k = 0; k < solution.radiosity.size(); k += channels)
+        for (std::size_t c = 0; c < channels; ++c)
+            part[c] += mode_.shape[k + c] * (system_.exitance[k + c] - solution.radiosity[k + c]) +
+                       mode_.image[k + c] * solution.radiosity[k + c];
+    for (std::size_t c = 0; c < channels; ++c) part[c] = ratio(part[c], kept_[c]);
+    for_each_coefficient(system_.transport.layout(), channels,
+                         [&](std::size_t k, std::size_t m, std::size_t c) {
+                             solution.radiosity[k] += part[c] * system_.reflectance[m] * mode_.shape[k];
+                             solution.irradiance[k] += part[c] * mode_.image[k];
+                         });
 }
 
 double ErrorEstimate::slowest() const { return *std::max_element(returned_.begin(), returned_.end()); }

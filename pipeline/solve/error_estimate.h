@@ -11,6 +11,7 @@
 namespace kinelux::solve {
 
 struct System;
+struct SystemSolution;
 
 using model::DominantMode;
 
@@ -33,13 +34,27 @@ public:
     /// Less than a millionth of ||M|| counts as that.
     /// @param residual  M + rho G B - B
     double of(std::span<const double> residual, std::span<const double> radiosity) const;
+    /// The same without the mode's part of the residual.
+    double of_rest(std::span<const double> residual, std::span<const double> radiosity) const;
+
+    /// Adds the multiple of the dominant mode that takes its part out of the residual, per channel: the projection
+    /// <z, r> = 0, which needs no product, since <z, rho G B> = <G rho z, B>. Radiosity and irradiance both change.
+    void take_mode_out(SystemSolution& solution) const;
+
     /// The largest share of light that a bounce returns, over the channels [1].
     double slowest() const;
 
 private:
+    struct Parts {
+        double of_mode = 0.0, of_rest = 0.0; ///< squared errors
+        double size = 0.0;                   ///< ||B||
+    };
+    Parts parts(std::span<const double> residual, std::span<const double> radiosity) const;
+
     const System& system_;
     const DominantMode& mode_;
     std::vector<double> returned_, mode_square_, mode_size_; ///< q, <z, rho z>, ||rho z|| where it counts
+    std::vector<double> kept_;                               ///< <z, rho z> - <z, rho G rho z>
     std::vector<bool> counts_;                               ///< per element
     double least_size_ = 0.0;
 };

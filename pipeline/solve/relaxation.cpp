@@ -61,6 +61,7 @@ void gauss_seidel(const System& system, const RowOperator& rows, const SolveOpti
                   const ErrorEstimate& estimate, SystemSolution& solution) {
     // The residual after a sweep is about q/2 times the change that the sweep made: what was changed later in the sweep
     // has not reached the elements before. The exact residual is computed once that looks small enough.
+    // The slowest mode is taken out after each sweep, so that the next mode decides how many are needed.
     const double residual_by_change = 0.5 * estimate.slowest();
     std::vector<double> change(solution.radiosity.size());
     for (double again = 0.0; solution.sweeps < options.max_sweeps; again = 1.0) {
@@ -70,8 +71,9 @@ void gauss_seidel(const System& system, const RowOperator& rows, const SolveOpti
         double error = 1.0;
         do {
             sweep(system, rows, solution.radiosity, change);
+            estimate.take_mode_out(solution);
             solution.sweeps += 1.0;
-            error = residual_by_change * estimate.of(change, solution.radiosity);
+            error = residual_by_change * estimate.of_rest(change, solution.radiosity);
         } while (error > options.tolerance && solution.sweeps < options.max_sweeps);
         system.transport.apply(system.channels, solution.radiosity, solution.irradiance);
     }

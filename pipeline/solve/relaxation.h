@@ -7,7 +7,8 @@
 // sweeps run out; solution.irradiance is G B before and after; solution.sweeps grows by the work.
 namespace kinelux::solve {
 
-/// Gauss-Seidel sweeps in the order of the elements.
+/// Gauss-Seidel sweeps in the order of the elements, each followed by a correction in the slowest mode (deflation).
+/// @cite Nicolaides, SIAM J. Numer. Anal. 24 (1987)
 void gauss_seidel(const System& system, const RowOperator& rows, const SolveOptions& options,
                   const ErrorEstimate& estimate, SystemSolution& solution);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "solve/relaxation.h"
 #include "solve/solve.h"
 #include "solve/vectors.h"
 
@@ -94,34 +95,29 @@ void TemporalSolver::follow(const System& system, double& sweeps) {
     }
 }
 
-// The polynomial through the last one, two or three frames, continued by one step: whichever leaves the least residual.
+// The polynomial through the last one, two or three frames, continued by one step: whichever is the nearest by its
+// residual, after the slowest mode is taken out of that. The last frame alone is left as it is.
 SystemSolution TemporalSolver::start(const System& system, std::span<const double> direct) const {
     static constexpr std::array<std::array<double, 3>, 3> weights{{{1, 0, 0}, {2, -1, 0}, {3, -3, 1}}};
+    const bool extrapolates = options_.start == Start::Extrapolated;
+    const ErrorEstimate estimate(system, state_.mode);
     SystemSolution best;
     best.radiosity.assign(system.exitance.begin(), system.exitance.end());
     best.irradiance.assign(direct.begin(), direct.end());
-    const std::size_t candidates = options_.start == Start::LastFrame
-                                       ? std::min<std::size_t>(1, state_.reflected.size())
-                                       : state_.reflected.size();
+    const SystemSolution none = best;
     double least = 0.0;
-    for (std::size_t order = 0; order < candidates; ++order) {
-        SystemSolution from;
-        from.radiosity.assign(system.exitance.begin(), system.exitance.end());
-        from.irradiance.assign(direct.begin(), direct.end());
+    for (std::size_t order = 0; order < state_.reflected.size() && (extrapolates || order == 0); ++order) {
+        SystemSolution from = none;
         for (std::size_t p = 0; p <= order; ++p)
             for (std::size_t k = 0; k < direct.size(); ++k) {
                 from.radiosity[k] += weights[order][p] * state_.reflected[p][k];
                 from.irradiance[k] += weights[order][p] * state_.irradiance[p][k];
             }
-        double residual = 0.0;
-        for_each_coefficient(
-            system.transport.layout(), channels_, [&](std::size_t k, std::size_t m, std::size_t) {
-                const double r =
-                    system.exitance[k] + system.reflectance[m] * from.irradiance[k] - from.radiosity[k];
-                residual += r * r;
-            });
-        if (order > 0 && residual >= least) continue;
-        least = residual;
+        if (extrapolates) estimate.take_mode_out(from);
+        const double error =
+            estimate.of(residual_of(system, from.radiosity, from.irradiance), from.radiosity);
+        if (order > 0 && error >= least) continue;
+        least = error;
         best = std::move(from);
     }
     return best;

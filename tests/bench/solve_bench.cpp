@@ -7,6 +7,7 @@
 #include <ctime>
 #include <string_view>
 
+#include "core/log.h"
 #include "core/parallel.h"
 #include "support/sliding_lamp.h"
 
@@ -105,6 +106,7 @@ void print_channels(int n, int degree) {
 
 int main(int argc, char** argv) {
     const bool small = argc > 1 && std::string_view(argv[1]) == "--small";
+    core::configure_log(core::Verbosity::Quiet, {});
     const int poses = small ? 7 : 14;
     const support::SlidingLamp lamp(poses, small ? 1 : 3, 1, 0.02 * (poses - 1));
     constexpr std::array all{0.5, 0.7, 0.8, 0.9, 0.95, 0.99};

@@ -126,7 +126,7 @@ TEST(TemporalSolver, temporal_shooting_takes_the_shots_of_a_warm_start_with_the_
 }
 
 TEST(TemporalSolver, an_extrapolated_start_takes_fewer_sweeps_than_the_last_frame) {
-    const SlidingLamp slow(25, 1, 1);
+    const SlidingLamp slow(21, 1, 1, 0.2);
     const auto sweeps = [&](Start start) {
         BlockOperator blocks(slow.layout(), slow.static_blocks());
         const auto exitance = slow.exitance(1);
