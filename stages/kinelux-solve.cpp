@@ -28,8 +28,9 @@ struct Options {
         table.add(
             {.member = &method,
              .flags = "--method",
-             .help = "automatic: Gauss-Seidel sweeps, or conjugate gradients where surfaces are bright; "
-                     "shooting begins each frame at zero, temporal shooting at the frame before",
+             .help =
+                 "automatic: Gauss-Seidel sweeps, or conjugate gradients where rooms exchange little light; "
+                 "shooting begins each frame at zero, temporal shooting at the frame before",
              .words = {"automatic", "gauss-seidel", "conjugate-gradients", "temporal-shooting", "shooting"}});
         table.add({.member = &start,
                    .flags = "--start",

@@ -38,12 +38,14 @@ void reflect(const System& system, std::span<const double> shape, std::vector<do
     system.transport.apply(system.channels, sent, image);
 }
 
-/// Scales every channel to a norm of one.
-void normalize(std::size_t channels, std::vector<double>& shape) {
-    const std::vector<double> squares = channel_dots(channels, shape, shape);
+/// Scales every channel to a norm of one. @return  the norms before, per channel
+std::vector<double> normalize(std::size_t channels, std::vector<double>& shape) {
+    std::vector<double> norms = channel_dots(channels, shape, shape);
+    for (double& norm : norms) norm = std::sqrt(norm);
     for (std::size_t k = 0; k < shape.size(); k += channels)
         for (std::size_t c = 0; c < channels; ++c)
-            if (squares[c] > 0.0) shape[k + c] /= std::sqrt(squares[c]);
+            if (norms[c] > 0.0) shape[k + c] /= norms[c];
+    return norms;
 }
 
 } // namespace
@@ -57,38 +59,69 @@ std::vector<double> returned_shares(const System& system, const DominantMode& mo
     return shares;
 }
 
-DominantMode dominant_mode(const System& system, std::vector<double> from, std::size_t& products) {
-    constexpr double known = 0.05; // of 1 - q
-    constexpr int fewest = 3, most = 40;
-    DominantMode mode{.shape = std::move(from), .image = {}, .margin = {}, .second = {}};
-    if (mode.shape.empty())
-        mode.shape = constant_coefficients(system.transport.layout(), system.channels, system.areas,
-                                           std::vector<double>(system.reflectance.size(), 1.0));
-    mode.margin.assign(system.channels, 0.0);
-    mode.second.assign(system.channels, 1.0);
-    std::vector<double> last(system.channels, 0.0), last_step(system.channels, 1.0);
-    for (int step = 1; step <= most; ++step) {
+namespace {
+
+/// Light that is brighter from element to element: every mode is in it, so that the decay of the second can be seen.
+std::vector<double> ramp(const System& system) {
+    std::vector<double> values(system.reflectance.size());
+    for (std::size_t m = 0; m < values.size(); ++m)
+        values[m] = 0.5 + static_cast<double>(m) / static_cast<double>(values.size());
+    return constant_coefficients(system.transport.layout(), system.channels, system.areas, values);
+}
+
+/// What a power iteration knows of the eigenvalues of one channel.
+struct Seen {
+    double first = 0.0, step = 1.0; ///< Rayleigh quotient, and what it last changed by
+    double second = 0.0, second_step = 1.0;
+
+    /// Rayleigh quotients approach by steps that shrink like the square of the ratio of eigenvalues: what is to come.
+    double margin(double ratio) const { return step * ratio * ratio / (1.0 - ratio * ratio); }
+};
+
+} // namespace
+
+DominantMode dominant_mode(const System& system, DominantMode mode, std::size_t& products) {
+    constexpr double known = 0.05; // of 1 - eigenvalue
+    constexpr double largest_ratio = 0.99;
+    constexpr int fewest = 4, most = 40;
+    const std::size_t channels = system.channels;
+    if (mode.shape.empty()) {
+        mode.shape = ramp(system);
+        mode.second.assign(channels, 0.5);
+    }
+    mode.margin.assign(channels, 0.0);
+    std::vector<Seen> seen(channels);
+    std::vector<double> gap, last_gap; // G rho z - q z: what is left of the other modes
+    bool enough = false;
+    for (int step = 1; step <= most && !enough; ++step) {
         if (step > 1) mode.shape = mode.image;
-        normalize(system.channels, mode.shape);
+        const std::vector<double> scale = normalize(channels, mode.shape);
         reflect(system, mode.shape, mode.image);
         ++products;
         std::fill(mode.margin.begin(), mode.margin.end(), 0.0);
-        const std::vector<double> now = returned_shares(system, mode);
-        bool enough = step >= fewest;
-        for (std::size_t c = 0; c < system.channels; ++c) {
-            // The Rayleigh quotient approaches q by steps that shrink like the square of the second eigenvalue.
-            const double change = std::abs(now[c] - last[c]);
-            const double shrinks = std::clamp(ratio(change, last_step[c]), 0.0, 0.98);
-            mode.second[c] = std::sqrt(shrinks);
-            mode.margin[c] = change * shrinks / (1.0 - shrinks);
-            enough = enough && mode.margin[c] <= known * (1.0 - now[c]);
-            last_step[c] = change;
+        const std::vector<double> first = returned_shares(system, mode);
+        gap = mode.image;
+        for (std::size_t k = 0; k < gap.size(); ++k) gap[k] -= first[k % channels] * mode.shape[k];
+        const std::vector<double> product = last_gap.empty() ? std::vector<double>(channels, 0.0)
+                                                             : reflected_dots(system, last_gap, gap),
+                                  square =
+                                      last_gap.empty() ? product : reflected_dots(system, last_gap, last_gap);
+        enough = step >= fewest;
+        for (std::size_t c = 0; c < channels; ++c) {
+            Seen& now = seen[c];
+            now.step = std::abs(first[c] - now.first);
+            now.first = first[c];
+            const double second = scale[c] * std::abs(ratio(product[c], square[c]));
+            now.second_step = std::abs(second - now.second);
+            now.second = second;
+            if (first[c] > 0.0 && second > 0.0)
+                mode.second[c] = std::clamp((second + now.second_step) / first[c], 0.5, largest_ratio);
+            mode.margin[c] = now.margin(mode.second[c]);
+            enough = enough && mode.margin[c] <= known * (1.0 - first[c]) &&
+                     now.second_step <= 2.0 * known * (1.0 - second);
         }
-        last = now;
-        if (enough) break;
+        last_gap = gap;
     }
-    // Two steps say little of the second eigenvalue: it counts as a half of the first at least.
-    for (double& second : mode.second) second = std::max(second, 0.5);
     return mode;
 }
 
@@ -162,6 +195,13 @@ void ErrorEstimate::take_mode_out(SystemSolution& solution) const {
                              solution.radiosity[k] += part[c] * system_.reflectance[m] * mode_.shape[k];
                              solution.irradiance[k] += part[c] * mode_.image[k];
                          });
+}
+
+double ErrorEstimate::second_slowest() const {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < returned_.size(); ++c)
+        largest = std::max(largest, returned_[c] * mode_.second[c]);
+    return largest;
 }
 
 double ErrorEstimate::slowest() const { return *std::max_element(returned_.begin(), returned_.end()); }

@@ -18,10 +18,11 @@ using model::DominantMode;
 /// The share of the mode that a bounce returns, per channel: <z, rho G rho z> / <z, rho z> + margin, at most 0.9999.
 std::vector<double> returned_shares(const System& system, const DominantMode& mode);
 
-/// Power iteration on rho G until the eigenvalue q is known to a twentieth of 1 - q.
-/// @param from  a shape to begin with; empty: light that is the same everywhere
-/// @param products  incremented by the products with G that it took
-DominantMode dominant_mode(const System& system, std::vector<double> from, std::size_t& products);
+/// Power iteration on rho G until the eigenvalue q is known to a twentieth of 1 - q, and the second one to a tenth of 1
+/// less itself; the second is that of what the iteration leaves, G rho z - q z.
+/// @param mode  to begin with; empty: light that is brighter from element to element
+/// @param products  incremented by the products with G that it took, 4 to 40
+DominantMode dominant_mode(const System& system, DominantMode mode, std::size_t& products);
 
 /// Estimates the error of a radiosity by its residual: (I - rho G)^-1 r = a u / (1 - q) + rest, where u is the dominant
 /// mode, q its eigenvalue and a its part of r; the rest grows by at most 1 / (1 - second eigenvalue).
@@ -41,8 +42,9 @@ public:
     /// <z, r> = 0, which needs no product, since <z, rho G B> = <G rho z, B>. Radiosity and irradiance both change.
     void take_mode_out(SystemSolution& solution) const;
 
-    /// The largest share of light that a bounce returns, over the channels [1].
+    /// The largest share of light that a bounce returns, over the channels [1]; and that of the modes but the slowest.
     double slowest() const;
+    double second_slowest() const;
 
 private:
     struct Parts {

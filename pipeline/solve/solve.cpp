@@ -26,12 +26,11 @@ double flux(const System& system, std::span<const double> x) {
 
 // The choice is measured: docs/theory.md, Solving.
 Method chosen(const SolveOptions& options, const RowOperator* rows, const ErrorEstimate& estimate) {
-    constexpr double bright = 0.8, fine = 1e-6;
+    constexpr double slow = 0.6;
     if (rows == nullptr && options.method != Method::Shooting && options.method != Method::TemporalShooting)
         return Method::ConjugateGradients;
     if (options.method != Method::Automatic) return options.method;
-    return estimate.slowest() > bright || options.tolerance <= fine ? Method::ConjugateGradients
-                                                                    : Method::GaussSeidel;
+    return estimate.second_slowest() > slow ? Method::ConjugateGradients : Method::GaussSeidel;
 }
 
 // The start that solve_from() expects of a radiosity: M where nothing is reflected, with its irradiance.

@@ -12,7 +12,7 @@
 namespace kinelux::solve {
 
 enum class Method : std::uint8_t {
-    Automatic,        ///< Gauss-Seidel or conjugate gradients, by how much light a bounce returns
+    Automatic,        ///< Gauss-Seidel, or conjugate gradients where light decays slowly in more than one way
     Shooting,         ///< progressive refinement from zero in every frame: the paper's "classical" baseline
     TemporalShooting, ///< progressive refinement of what has changed since the frame before: the paper's method
     GaussSeidel,      ///< sweeps; conjugate gradients where G has no rows

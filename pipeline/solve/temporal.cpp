@@ -90,7 +90,7 @@ void TemporalSolver::follow(const System& system, double& sweeps) {
     }
     if (exact) {
         std::size_t products = 0;
-        state_.mode = dominant_mode(system, std::move(state_.mode.shape), products);
+        state_.mode = dominant_mode(system, std::move(state_.mode), products);
         sweeps += static_cast<double>(products);
     }
 }

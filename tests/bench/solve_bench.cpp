@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables of docs/theory.md, Solving: sweeps per frame by method, start and reflectance, and what channels cost. A
-// closed room with a shelf; a lamp that slides by 1 % of the room's length per frame. --small: one row, few elements.
+// closed room with a shelf, or with a wall; a lamp that slides by 1 % of the room's length per frame. --small: one row, few elements.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -39,13 +39,25 @@ double cold_sweeps(const support::SlidingLamp& lamp, double rho, const solve::So
     return solve::solve_system({blocks, 1, exitance, reflectance, lamp.areas()}, options, {}).sweeps;
 }
 
+// The first two eigenvalues of rho G, as the solver estimates them.
+std::pair<double, double> eigenvalues(const support::SlidingLamp& lamp, double rho) {
+    const solve::BlockOperator blocks(lamp.layout(), lamp.static_blocks());
+    const std::vector<double> exitance = lamp.exitance(1), reflectance = lamp.reflectance(rho, 1);
+    const solve::System system{blocks, 1, exitance, reflectance, lamp.areas()};
+    std::size_t products = 0;
+    const auto mode = solve::dominant_mode(system, {}, products);
+    const double q = solve::returned_shares(system, mode).front();
+    return {q, q * mode.second.front()};
+}
+
 void print_sweeps(const support::SlidingLamp& lamp, std::span<const double> reflectances) {
     std::printf(
         "| rho | error | shooting: zero | last | extrapolated | Gauss-Seidel: cold | last | extrapolated "
-        "| CG: cold | last | extrapolated |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "| CG: cold | last | extrapolated |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const double rho : reflectances)
         for (const double tolerance : {1e-3, 1e-4, 1e-6}) {
-            std::printf("| %.2f | %.0e |", rho, tolerance);
+            const auto [q, second] = eigenvalues(lamp, rho);
+            std::printf("| %.2f | %.2f, %.2f | %.0e |", rho, q, second, tolerance);
             for (const Method method :
                  {Method::TemporalShooting, Method::GaussSeidel, Method::ConjugateGradients}) {
                 solve::SolveOptions options{.method = method, .tolerance = tolerance, .max_sweeps = 1e5};
@@ -111,6 +123,9 @@ int main(int argc, char** argv) {
     const support::SlidingLamp lamp(poses, small ? 1 : 3, 1, 0.02 * (poses - 1));
     constexpr std::array all{0.5, 0.7, 0.8, 0.9, 0.95, 0.99};
     print_sweeps(lamp, std::span(all).first(small ? 1 : all.size()));
+    std::printf("\nTwo rooms:\n\n");
+    const support::SlidingLamp walled(poses, small ? 1 : 3, 1, 0.02 * (poses - 1), support::Inside::Wall);
+    print_sweeps(walled, std::span(all).first(small ? 1 : all.size()));
     std::printf("\n| degree | unknowns | product, 1 channel [ms] | 3 channels / 1 | all rows shot [ms] | 3 "
                 "channels / 1 "
                 "|\n|---|---|---|---|---|---|\n");

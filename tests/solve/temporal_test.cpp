@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames of a closed room with a sliding lamp, against each frame solved to rounding.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -19,26 +20,33 @@ const SlidingLamp& lamp() {
     return room;
 }
 
+// Two rooms with little light between them.
+const SlidingLamp& walled() {
+    static const SlidingLamp rooms(2, 2, 1, 0.1, support::Inside::Wall);
+    return rooms;
+}
+
 struct Light {
+    const SlidingLamp& room;
     std::size_t channels;
     std::vector<double> exitance, reflectance;
 
-    Light(double rho, std::size_t count)
-        : channels(count), exitance(lamp().exitance(count)), reflectance(lamp().reflectance(rho, count)) {}
+    Light(double rho, std::size_t count, const SlidingLamp& in = lamp())
+        : room(in), channels(count), exitance(in.exitance(count)), reflectance(in.reflectance(rho, count)) {}
     System system(const TransportOperator& transport) const {
-        return {transport, channels, exitance, reflectance, lamp().areas()};
+        return {transport, channels, exitance, reflectance, room.areas()};
     }
     std::vector<double> exact(const TransportOperator& transport) const {
         return solve_system(system(transport), {.method = Method::ConjugateGradients, .tolerance = 1e-12}, {})
             .radiosity;
     }
     TemporalSolver solver(const SolveOptions& options) const {
-        return {channels, reflectance, lamp().areas(), options};
+        return {channels, reflectance, room.areas(), options};
     }
     // Over what does not emit.
     double error(const std::vector<double>& radiosity, const std::vector<double>& truth) const {
         double difference = 0.0, size = 0.0;
-        const auto& layout = lamp().layout();
+        const auto& layout = room.layout();
         for (std::size_t e = 0; e < layout.elements(); ++e) {
             if (exitance[layout.offsets[e] * channels] > 0.0) continue;
             for (std::size_t k = layout.offsets[e] * channels; k < layout.offsets[e + 1] * channels; ++k) {
@@ -53,25 +61,73 @@ struct Light {
 constexpr std::array all_methods{Method::Automatic, Method::Shooting, Method::TemporalShooting,
                                  Method::GaussSeidel, Method::ConjugateGradients};
 
+void expect_agreement(const SlidingLamp& room, double rho) {
+    const BlockOperator blocks(room.layout(), room.static_blocks());
+    const Light light(rho, 3, room);
+    const std::vector<double> truth = light.exact(blocks);
+    for (const double tolerance : {1e-3, 1e-6})
+        for (const Method method : all_methods) {
+            const auto found = solve_system(
+                light.system(blocks), {.method = method, .tolerance = tolerance, .max_sweeps = 1e5}, {});
+            const double error = light.error(found.radiosity, truth);
+            SCOPED_TRACE("method " + std::to_string(static_cast<int>(method)) + " rho " +
+                         std::to_string(rho) + " estimate " + std::to_string(found.solver_error));
+            EXPECT_TRUE(found.converged);
+            EXPECT_LE(error, tolerance);
+            // The estimate is no smaller than the error, and not so large that work is wasted for digits.
+            EXPECT_LE(error, 1.1 * found.solver_error);
+            EXPECT_GE(error, 0.01 * found.solver_error);
+        }
+}
+
 TEST(SolveSystem, all_methods_agree_within_the_tolerance_in_closed_rooms_of_any_brightness) {
-    const BlockOperator blocks(lamp().layout(), lamp().static_blocks());
-    for (const double rho : {0.5, 0.9, 0.99}) {
-        const Light light(rho, 3);
-        const std::vector<double> truth = light.exact(blocks);
-        for (const double tolerance : {1e-3, 1e-6})
-            for (const Method method : all_methods) {
-                const auto found = solve_system(
-                    light.system(blocks), {.method = method, .tolerance = tolerance, .max_sweeps = 1e5}, {});
-                const double error = light.error(found.radiosity, truth);
-                SCOPED_TRACE("method " + std::to_string(static_cast<int>(method)) + " rho " +
-                             std::to_string(rho));
-                EXPECT_TRUE(found.converged);
-                EXPECT_LE(error, tolerance);
-                // The estimate is no smaller than the error, and not so large that work is wasted for digits.
-                EXPECT_LE(error, 1.1 * found.solver_error);
-                EXPECT_GE(error, 0.01 * found.solver_error);
-            }
+    for (const double rho : {0.5, 0.9, 0.99}) expect_agreement(lamp(), rho);
+}
+
+TEST(SolveSystem, all_methods_agree_within_the_tolerance_where_two_rooms_exchange_little_light) {
+    for (const double rho : {0.5, 0.9, 0.99}) expect_agreement(walled(), rho);
+}
+
+TEST(DominantMode, second_eigenvalue_is_that_of_the_exchange_between_two_rooms) {
+    // By orthogonal iteration on two vectors, to rounding.
+    const BlockOperator blocks(walled().layout(), walled().static_blocks());
+    const Light light(0.9, 1, walled());
+    const System system = light.system(blocks);
+    std::size_t products = 0;
+    const DominantMode mode = dominant_mode(system, {}, products);
+    EXPECT_LT(products, 40u);
+    const auto& layout = walled().layout();
+    const std::size_t n = layout.unknowns();
+    std::vector<double> root(n), first(n, 1.0), second(n), image(n);
+    for (std::size_t e = 0; e < layout.elements(); ++e)
+        for (std::size_t u = layout.offsets[e]; u < layout.offsets[e + 1]; ++u)
+            root[u] = std::sqrt(light.reflectance[e]);
+    for (std::size_t k = 0; k < n; ++k) second[k] = std::sin(static_cast<double>(k));
+    const auto dot = [](const auto& x, const auto& y) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
+        return sum;
+    };
+    const auto step = [&](std::vector<double>& x) {
+        std::vector<double> sent = x;
+        for (std::size_t k = 0; k < n; ++k) sent[k] *= root[k];
+        blocks.apply(1, sent, image);
+        for (std::size_t k = 0; k < n; ++k) x[k] = root[k] * image[k];
+        const double norm = std::sqrt(dot(x, x));
+        for (double& value : x) value /= norm;
+        return norm;
+    };
+    double largest = 0.0, next = 0.0;
+    for (int i = 0; i < 300; ++i) {
+        largest = step(first);
+        const double shared = dot(first, second);
+        for (std::size_t k = 0; k < n; ++k) second[k] -= shared * first[k];
+        next = step(second);
     }
+    const double q = returned_shares(system, mode).front();
+    EXPECT_NEAR(q, largest, 0.05 * (1.0 - largest));
+    EXPECT_NEAR(q * mode.second.front(), next, 0.2 * (1.0 - next));
+    EXPECT_GT(next, 0.6);
 }
 
 TEST(TemporalSolver, every_frame_of_every_method_is_within_the_tolerance) {

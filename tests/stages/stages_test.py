@@ -257,19 +257,25 @@ class BadInput(StageTest):
 class ResumedSolve(StageTest):
     """A moving scene that is solved once without interruption, and a copy of its case without the solution."""
 
+    @classmethod
+    def setUpClass(cls):
+        cls.made = pathlib.Path(tempfile.mkdtemp(prefix="kinelux-stages-"))
+        cls.addClassCleanup(shutil.rmtree, cls.made)
+        cls.scene = scenes.write_room(cls.made, moving=True, frames=12)
+        text = cls.scene.read_text(encoding="utf-8").replace("element_size = 0.5", "element_size = 0.3")
+        cls.scene.write_text(text, encoding="utf-8")
+        subprocess.run([str(BIN / "kinelux"), "run", str(cls.scene), "-o", str(cls.made / "whole"), "-j", "2"],
+                       capture_output=True, check=True, timeout=500)
+
     def setUp(self):
         super().setUp()
-        self.scene = scenes.write_room(self.folder, moving=True, frames=12)
-        text = self.scene.read_text(encoding="utf-8").replace("element_size = 0.5", "element_size = 0.25")
-        self.scene.write_text(text, encoding="utf-8")
-        self.run_ok("kinelux", "run", self.scene, "-o", "whole", "-j", "2")
-        self.whole = (self.folder / "whole/solution.h5").read_bytes()
+        self.whole = (self.made / "whole/solution.h5").read_bytes()
         self.case, self.so_far = self.folder / "case", self.folder / "case/solution-so-far.h5"
         self.fresh_copy()
 
     def fresh_copy(self):
         shutil.rmtree(self.case, ignore_errors=True)
-        shutil.copytree(self.folder / "whole", self.case)
+        shutil.copytree(self.made / "whole", self.case)
         (self.case / "solution.h5").unlink()
 
     def stop_after(self, saves, sign, *command):
@@ -316,7 +322,7 @@ class ResumedSolve(StageTest):
         self.stop_after(2, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0")
         done = self.run_ok("kinelux", "run", self.scene, "-o", "case")
         self.assertIn("resumes after frame", done.stderr)
-        self.assert_same_results(self.folder / "whole", self.case)
+        self.assert_same_results(self.made / "whole", self.case)
 
     def test_what_was_done_with_other_options_or_is_damaged_is_not_used(self):
         self.stop_after(2, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0")

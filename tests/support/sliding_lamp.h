@@ -11,14 +11,17 @@
 
 namespace kinelux::support {
 
-/// A closed room with a shelf and a lamp, a thin box that slides under the ceiling and casts a shadow itself. The blocks
-/// of every pose are computed beforehand, so that an animation costs nothing but its solver.
+/// What stands in the room of a sliding lamp: a shelf, or a wall that leaves a seventh of the room's section open.
+enum class Inside : std::uint8_t { Shelf, Wall };
+
+/// A closed room and a lamp, a thin box that slides under the ceiling and casts a shadow itself. The blocks of every pose
+/// are computed beforehand, so that an animation costs nothing but its solver.
 class SlidingLamp {
 public:
     /// @param poses  along the way, >= 2; @param n  elements along an edge of each patch
-    /// @param way  of the lamp in a room 2 m long [m], at most 1.4
-    SlidingLamp(int poses, int n, int degree, double way = 1.2) {
-        for (int p = 0; p < poses; ++p) add_pose(way * p / (poses - 1), n, degree);
+    /// @param way  of the lamp in a room 2 m long [m], at most 1.4, or 0.3 before a wall
+    SlidingLamp(int poses, int n, int degree, double way = 1.2, Inside inside = Inside::Shelf) {
+        for (int p = 0; p < poses; ++p) add_pose(way * p / (poses - 1), n, degree, inside);
         for (Pose& pose : poses_) keep_what_differs(pose);
     }
 
@@ -56,12 +59,14 @@ private:
         model::BlockSet blocks;
     };
 
-    void add_pose(double shift, int n, int degree) {
+    void add_pose(double shift, int n, int degree, Inside inside) {
         model::PatchSet set;
         set.patches = box(Vec3(0), Vec3(2.0, 1.6, 1.4), Facing::Inwards);
         const Vec3 lamp(0.2 + shift, 0.6, 1.2);
-        for (const auto& [low, high] : {std::pair(Vec3(0.7, 0.4, 0.4), Vec3(1.3, 1.2, 0.45)),
-                                        std::pair(lamp, lamp + Vec3(0.4, 0.4, 0.05))})
+        const auto obstacle = inside == Inside::Shelf
+                                  ? std::pair(Vec3(0.7, 0.4, 0.4), Vec3(1.3, 1.2, 0.45))
+                                  : std::pair(Vec3(0.95, 0.01, 0.01), Vec3(1.05, 1.59, 1.2));
+        for (const auto& [low, high] : {obstacle, std::pair(lamp, lamp + Vec3(0.4, 0.4, 0.05))})
             for (const auto& patch : box(low, high, Facing::Outwards)) set.patches.push_back(patch);
         const auto scene = plain_scene(1);
         const auto shapes = shapes_of(set, n, degree);
