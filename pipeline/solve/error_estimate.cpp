@@ -28,24 +28,36 @@ double ratio(double numerator, double denominator) {
     return denominator > 0.0 ? numerator / denominator : 0.0;
 }
 
-/// image = G rho z.
-void reflect(const System& system, std::span<const double> shape, std::vector<double>& image) {
-    std::vector<double> sent(shape.size());
-    for_each_coefficient(
-        system.transport.layout(), system.channels,
-        [&](std::size_t k, std::size_t m, std::size_t) { sent[k] = system.reflectance[m] * shape[k]; });
-    image.resize(shape.size());
-    system.transport.apply(system.channels, sent, image);
+/// G rho z and G rho y in one product.
+void reflect(const System& system, const std::vector<double>& z, const std::vector<double>& y,
+             std::vector<double>& image_z, std::vector<double>& image_y) {
+    std::vector<std::vector<double>> sent{z, y};
+    for (auto& vector : sent)
+        for_each_coefficient(
+            system.transport.layout(), system.channels,
+            [&](std::size_t k, std::size_t m, std::size_t) { vector[k] *= system.reflectance[m]; });
+    const std::vector<double> all = packed(sent, system.channels);
+    std::vector<double> images(all.size());
+    system.transport.apply(2 * system.channels, all, images);
+    image_z.resize(z.size());
+    image_y.resize(y.size());
+    unpack(images, 0, 2, system.channels, Into::Set, image_z);
+    unpack(images, 1, 2, system.channels, Into::Set, image_y);
 }
 
-/// Scales every channel to a norm of one. @return  the norms before, per channel
-std::vector<double> normalize(std::size_t channels, std::vector<double>& shape) {
-    std::vector<double> norms = channel_dots(channels, shape, shape);
-    for (double& norm : norms) norm = std::sqrt(norm);
+/// Scales every channel to a norm of one.
+void normalize(std::size_t channels, std::vector<double>& shape) {
+    const std::vector<double> squares = channel_dots(channels, shape, shape);
     for (std::size_t k = 0; k < shape.size(); k += channels)
         for (std::size_t c = 0; c < channels; ++c)
-            if (norms[c] > 0.0) shape[k + c] /= norms[c];
-    return norms;
+            if (squares[c] > 0.0) shape[k + c] /= std::sqrt(squares[c]);
+}
+
+/// Takes out of y its part along z, per channel.
+void take_out(const System& system, const std::vector<double>& z, std::vector<double>& y) {
+    const std::vector<double> shared = reflected_dots(system, y, z), square = reflected_dots(system, z, z);
+    for (std::size_t k = 0; k < y.size(); k += system.channels)
+        for (std::size_t c = 0; c < system.channels; ++c) y[k + c] -= ratio(shared[c], square[c]) * z[k + c];
 }
 
 } // namespace
@@ -61,66 +73,59 @@ std::vector<double> returned_shares(const System& system, const DominantMode& mo
 
 namespace {
 
-/// Light that is brighter from element to element: every mode is in it, so that the decay of the second can be seen.
-std::vector<double> ramp(const System& system) {
-    std::vector<double> values(system.reflectance.size());
-    for (std::size_t m = 0; m < values.size(); ++m)
-        values[m] = 0.5 + static_cast<double>(m) / static_cast<double>(values.size());
-    return constant_coefficients(system.transport.layout(), system.channels, system.areas, values);
-}
-
-/// What a power iteration knows of the eigenvalues of one channel.
+/// The Rayleigh quotient of one eigenvalue, and what it last changed by.
 struct Seen {
-    double first = 0.0, step = 1.0; ///< Rayleigh quotient, and what it last changed by
-    double second = 0.0, second_step = 1.0;
+    double value = 0.0, step = 1.0;
 
-    /// Rayleigh quotients approach by steps that shrink like the square of the ratio of eigenvalues: what is to come.
-    double margin(double ratio) const { return step * ratio * ratio / (1.0 - ratio * ratio); }
+    void note(double now) {
+        step = std::abs(now - value);
+        value = now;
+    }
+    bool within(double share) const { return step <= share * (1.0 - value); }
 };
 
 } // namespace
 
 DominantMode dominant_mode(const System& system, DominantMode mode, std::size_t& products) {
     constexpr double known = 0.05; // of 1 - eigenvalue
-    constexpr double largest_ratio = 0.99;
-    constexpr int fewest = 4, most = 40;
-    const std::size_t channels = system.channels;
-    if (mode.shape.empty()) {
-        mode.shape = ramp(system);
-        mode.second.assign(channels, 0.5);
-    }
+    constexpr double least_ratio = 0.5, largest_ratio = 0.99;
+    constexpr int fewest = 6, most = 40;
+    const std::size_t channels = system.channels, size = system.exitance.size();
+    if (mode.shape.empty())
+        mode.shape = constant_coefficients(system.transport.layout(), channels, system.areas,
+                                           std::vector<double>(system.reflectance.size(), 1.0));
     mode.margin.assign(channels, 0.0);
-    std::vector<Seen> seen(channels);
-    std::vector<double> gap, last_gap; // G rho z - q z: what is left of the other modes
+    mode.second.assign(channels, least_ratio);
+    std::vector<double> other(size), other_image; // y, which becomes the second mode
+    for (std::size_t k = 0; k < size; ++k) other[k] = std::sin(static_cast<double>(k + 1));
+    std::vector<Seen> first(channels), second(channels);
     bool enough = false;
     for (int step = 1; step <= most && !enough; ++step) {
-        if (step > 1) mode.shape = mode.image;
-        const std::vector<double> scale = normalize(channels, mode.shape);
-        reflect(system, mode.shape, mode.image);
+        if (step > 1) {
+            mode.shape = mode.image;
+            other = other_image;
+        }
+        take_out(system, mode.shape, other);
+        normalize(channels, mode.shape);
+        normalize(channels, other);
+        reflect(system, mode.shape, other, mode.image, other_image);
         ++products;
-        std::fill(mode.margin.begin(), mode.margin.end(), 0.0);
-        const std::vector<double> first = returned_shares(system, mode);
-        gap = mode.image;
-        for (std::size_t k = 0; k < gap.size(); ++k) gap[k] -= first[k % channels] * mode.shape[k];
-        const std::vector<double> product = last_gap.empty() ? std::vector<double>(channels, 0.0)
-                                                             : reflected_dots(system, last_gap, gap),
-                                  square =
-                                      last_gap.empty() ? product : reflected_dots(system, last_gap, last_gap);
+        const std::vector<double> shares = returned_shares(system, mode),
+                                  other_shares = reflected_dots(system, other, other_image),
+                                  other_square = reflected_dots(system, other, other);
         enough = step >= fewest;
         for (std::size_t c = 0; c < channels; ++c) {
-            Seen& now = seen[c];
-            now.step = std::abs(first[c] - now.first);
-            now.first = first[c];
-            const double second = scale[c] * std::abs(ratio(product[c], square[c]));
-            now.second_step = std::abs(second - now.second);
-            now.second = second;
-            if (first[c] > 0.0 && second > 0.0)
-                mode.second[c] = std::clamp((second + now.second_step) / first[c], 0.5, largest_ratio);
-            mode.margin[c] = now.margin(mode.second[c]);
-            enough = enough && mode.margin[c] <= known * (1.0 - first[c]) &&
-                     now.second_step <= 2.0 * known * (1.0 - second);
+            first[c].note(shares[c]);
+            second[c].note(std::abs(ratio(other_shares[c], other_square[c])));
+            enough = enough && first[c].within(known) && second[c].within(known);
         }
-        last_gap = gap;
+    }
+    for (std::size_t c = 0; c < channels; ++c) {
+        // Quotients approach by steps that shrink like the square of the ratio of eigenvalues.
+        const double bound = second[c].value + second[c].step;
+        mode.second[c] = std::clamp(ratio(bound, first[c].value), least_ratio, largest_ratio);
+        const double shrinks = mode.second[c] * mode.second[c];
+        mode.margin[c] = first[c].step * shrinks / (1.0 - shrinks);
     }
     return mode;
 }

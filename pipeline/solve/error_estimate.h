@@ -18,10 +18,10 @@ using model::DominantMode;
 /// The share of the mode that a bounce returns, per channel: <z, rho G rho z> / <z, rho z> + margin, at most 0.9999.
 std::vector<double> returned_shares(const System& system, const DominantMode& mode);
 
-/// Power iteration on rho G until the eigenvalue q is known to a twentieth of 1 - q, and the second one to a tenth of 1
-/// less itself; the second is that of what the iteration leaves, G rho z - q z.
-/// @param mode  to begin with; empty: light that is brighter from element to element
-/// @param products  incremented by the products with G that it took, 4 to 40
+/// Orthogonal iteration on rho G with two vectors, until the Rayleigh quotient of either changes by less than a twentieth
+/// of 1 less itself.
+/// @param mode  to begin with; empty: light that is the same everywhere
+/// @param products  incremented by the products with G that it took, 6 to 40
 DominantMode dominant_mode(const System& system, DominantMode mode, std::size_t& products);
 
 /// Estimates the error of a radiosity by its residual: (I - rho G)^-1 r = a u / (1 - q) + rest, where u is the dominant

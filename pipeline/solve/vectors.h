@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,29 @@ inline std::vector<double> channel_dots(std::size_t channels, std::span<const do
     for (std::size_t k = 0; k < x.size(); k += channels)
         for (std::size_t c = 0; c < channels; ++c) sums[c] += x[k + c] * y[k + c];
     return sums;
+}
+
+/// Vectors that go through G together, so that every block is read once: channels x vectors, vector by vector fastest.
+inline std::vector<double> packed(const std::vector<std::vector<double>>& vectors, std::size_t channels) {
+    const std::size_t size = vectors.front().size(), width = channels * vectors.size();
+    std::vector<double> all(size * vectors.size());
+    for (std::size_t v = 0; v < vectors.size(); ++v)
+        for (std::size_t u = 0; u < size / channels; ++u)
+            for (std::size_t c = 0; c < channels; ++c)
+                all[u * width + v * channels + c] = vectors[v][u * channels + c];
+    return all;
+}
+
+/// Sets or adds vector `v` of `count` that are packed in `all`.
+enum class Into : std::uint8_t { Set, Add };
+inline void unpack(std::span<const double> all, std::size_t v, std::size_t count, std::size_t channels,
+                   Into into, std::vector<double>& vector) {
+    const std::size_t width = channels * count;
+    for (std::size_t u = 0; u < vector.size() / channels; ++u)
+        for (std::size_t c = 0; c < channels; ++c) {
+            double& value = vector[u * channels + c];
+            value = all[u * width + v * channels + c] + (into == Into::Add ? value : 0.0);
+        }
 }
 
 } // namespace kinelux::solve

@@ -51,9 +51,9 @@ std::pair<double, double> eigenvalues(const support::SlidingLamp& lamp, double r
 }
 
 void print_sweeps(const support::SlidingLamp& lamp, std::span<const double> reflectances) {
-    std::printf(
-        "| rho | error | shooting: zero | last | extrapolated | Gauss-Seidel: cold | last | extrapolated "
-        "| CG: cold | last | extrapolated |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    std::printf("| rho | q, second | error | shooting: zero | last | extrapolated | Gauss-Seidel: cold | "
+                "last | extrapolated "
+                "| CG: cold | last | extrapolated |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const double rho : reflectances)
         for (const double tolerance : {1e-3, 1e-4, 1e-6}) {
             const auto [q, second] = eigenvalues(lamp, rho);
