@@ -26,7 +26,7 @@ double flux(const System& system, std::span<const double> x) {
 
 // The choice is measured: docs/theory.md, Solving.
 Method chosen(const SolveOptions& options, const RowOperator* rows, const ErrorEstimate& estimate) {
-    constexpr double slow = 0.6;
+    constexpr double slow = 0.7;
     if (rows == nullptr && options.method != Method::Shooting && options.method != Method::TemporalShooting)
         return Method::ConjugateGradients;
     if (options.method != Method::Automatic) return options.method;
