@@ -77,7 +77,8 @@ private:
         if (poses_.size() > 1) return;
         layout_ = all.layout;
         static_ = poses_.front().blocks;
-        const auto per_patch = static_cast<std::size_t>(n * n), underside = 12 * per_patch;
+        const auto per_patch = static_cast<std::size_t>(n) * static_cast<std::size_t>(n),
+                   underside = 12 * per_patch;
         for (std::size_t e = 0; e < shapes.size(); ++e) {
             areas_.push_back(shapes[e].area);
             is_wall_.push_back(e < 6 * per_patch);
