@@ -122,6 +122,7 @@ TEST(Animation, taken_up_again_gives_the_same_frames_and_leads_engines_with_a_me
         coefficients::compute_coefficients(shapes, room.scene, room.plan, occluders, options, 1e6);
     motion::ExactEngine exact(blocks, shapes, room.plan, occluders, options);
     std::vector<double> areas;
+    areas.reserve(shapes.size());
     for (const auto& shape : shapes) areas.push_back(shape.area);
     const solve::Animation animation{room.scene, room.plan, blocks, room.tree.elements, areas};
     const std::vector<std::uint32_t> frames{0, 1, 2, 3, 4, 5};
