@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <map>
 #include <optional>
 #include <string>
 
@@ -10,42 +11,61 @@
 #include "motion/exact_engine.h"
 #include "reports.h"
 #include "solve/animation.h"
+#include "solve_saver.h"
 
 using namespace kinelux;
 
 namespace {
 
 struct Options {
-    std::string method = "gauss-seidel";
+    std::string method = "automatic", start = "extrapolated";
     std::optional<double> tolerance;
-    std::uint32_t max_sweeps = solve::SolveOptions{}.max_sweeps;
+    double max_sweeps = solve::SolveOptions{}.max_sweeps;
+    double save_every_s = 30.0;
 
     explicit Options(cli::OptionTable& table) {
         table.add(
             {.member = &method,
              .flags = "--method",
              .help =
-                 "sweeps or conjugate gradients from the frames before, or progressive refinement from zero",
-             .words = {"gauss-seidel", "conjugate-gradients", "shooting"}});
+                 "automatic: Gauss-Seidel sweeps, or conjugate gradients where rooms exchange little light; "
+                 "shooting begins each frame at zero, temporal shooting at the frame before",
+             .words = {"automatic", "gauss-seidel", "conjugate-gradients", "temporal-shooting", "shooting"}});
+        table.add({.member = &start,
+                   .flags = "--start",
+                   .help = "of a frame: the frames before, continued by a step, or the last frame as it is",
+                   .words = {"extrapolated", "last-frame"}});
         table.add({.member = &tolerance,
                    .flags = "--tolerance",
-                   .help = "of the residual relative to the exitance",
+                   .help = "relative error of radiosity that the solver may leave",
                    .unit = "1",
-                   .low = 1e-14,
+                   .low = 1e-12,
                    .high = 0.1,
-                   .unset = "from the accuracy and the lamps' size"});
+                   .unset = "1/100 of the accuracy, at most 1e-4"});
         table.add({.member = &max_sweeps,
                    .flags = "--max-sweeps",
                    .help = "of the solver per frame",
                    .low = 1,
                    .high = 1e9});
+        table.add({.member = &save_every_s,
+                   .flags = "--save-every",
+                   .help = "from one save of the frames that are done to the next; 0 = after each",
+                   .unit = "s",
+                   .low = 0,
+                   .high = 1e9,
+                   .decides = cli::Decides::Manners});
     }
-    solve::SolveOptions with_default(double default_tolerance) const {
-        return {.method = method == "shooting"              ? solve::Method::Shooting
-                          : method == "conjugate-gradients" ? solve::Method::ConjugateGradients
-                                                            : solve::Method::GaussSeidel,
-                .tolerance = tolerance.value_or(default_tolerance),
-                .max_sweeps = max_sweeps};
+    solve::SolveOptions for_target(double target) const {
+        static const std::map<std::string, solve::Method> methods{
+            {"automatic", solve::Method::Automatic},
+            {"gauss-seidel", solve::Method::GaussSeidel},
+            {"conjugate-gradients", solve::Method::ConjugateGradients},
+            {"temporal-shooting", solve::Method::TemporalShooting},
+            {"shooting", solve::Method::Shooting}};
+        return {.method = methods.at(method),
+                .tolerance = tolerance.value_or(solve::tolerance_for(target)),
+                .max_sweeps = max_sweeps,
+                .start = start == "last-frame" ? solve::Start::LastFrame : solve::Start::Extrapolated};
     }
 };
 
@@ -58,6 +78,7 @@ int main(int argc, char** argv) {
                       .outputs = {"solution.h5"}});
     const std::uint64_t& seed = stage.add_seed();
     const auto& range = stage.add_frames("first and last frame that are solved");
+    stage.add_resume();
     const Options options(stage.options());
     return stage.run(argc, argv, [&](cli::Stage&) {
         auto light = stage.step("read", [&] { return stages::read_light_case(stage.folder()); });
@@ -67,16 +88,19 @@ int main(int argc, char** argv) {
         const auto frames = stages::frames_of(light.scene, range);
         motion::ExactEngine engine(blocks, light.elements, light.plan, light.occluders,
                                    light.transport_options(seed));
-        const double default_tolerance = solve::residual_tolerance(light.scene, light.tree.elements, areas);
         core::Progress progress("solve", frames.size());
         const auto show = [&](const model::FrameSolution& frame) {
             cli::Stage::throw_if_stopped();
-            progress.advance(1, fmt::format("frame {}, residual {:.1e}, unshot {:.2g} %", frame.frame,
-                                            frame.residual, 100.0 * frame.unshot));
+            progress.advance(1, fmt::format("frame {}, solver's error {:.1e}, unshot {:.2g} %", frame.frame,
+                                            frame.solver_error, 100.0 * frame.unshot));
         };
+        stages::SolveSaver saver(stage, options.save_every_s);
+        solve::Checkpoint checkpoint = saver.checkpoint();
+        progress.advance(checkpoint.from.solution.frames.size());
         const model::Solution solution = stage.step("solve", [&] {
             return solve::solve_animation({light.scene, light.plan, blocks, light.tree.elements, areas},
-                                          engine, frames, options.with_default(default_tolerance), show);
+                                          engine, frames, options.for_target(light.scene.accuracy.target),
+                                          show, std::move(checkpoint));
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });
         return stages::report_solution(solution, light.scene.accuracy.target, stage);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -112,29 +113,32 @@ void report_coefficients(const model::Coefficients& blocks, const LightCase& lig
 }
 
 core::ExitCode report_solution(const model::Solution& solution, double target, cli::Stage& stage) {
-    double residual = 0.0, error = 0.0;
-    std::uint64_t sweeps = 0, changed = 0, not_converged = 0;
+    double unshot = 0.0, solver_error = 0.0, error = 0.0, sweeps = 0.0;
+    std::uint64_t changed = 0, not_converged = 0;
     for (std::size_t f = 0; f < solution.frames.size(); ++f) {
         const model::FrameSolution& frame = solution.frames[f];
         const std::string key = fmt::format("frames/{}/", f);
         stage.record().set(key + "frame", static_cast<std::uint64_t>(frame.frame));
         stage.record().set(key + "residual", frame.residual);
         stage.record().set(key + "unshot", frame.unshot);
+        stage.record().set(key + "solver_error", frame.solver_error);
         stage.record().set(key + "error_estimate", frame.error_estimate);
-        stage.record().set(key + "sweeps", static_cast<std::uint64_t>(frame.sweeps));
+        stage.record().set(key + "sweeps", frame.sweeps);
         stage.record().set(key + "blocks_recomputed", static_cast<std::uint64_t>(frame.blocks_recomputed));
         stage.record().set(key + "converged", frame.converged);
         stage.record().set(key + "seconds", frame.seconds);
-        residual = std::max(residual, frame.residual);
+        unshot = std::max(unshot, frame.unshot);
+        solver_error = std::max(solver_error, frame.solver_error);
         error = std::max(error, frame.error_estimate);
         sweeps += frame.sweeps;
         changed += frame.blocks_recomputed;
         not_converged += frame.converged ? 0 : 1;
     }
     stage.count("frames", solution.frames.size());
-    stage.count("sweeps", sweeps);
+    stage.count("sweeps", static_cast<std::uint64_t>(std::llround(sweeps)));
     stage.count("blocks recomputed", changed);
-    stage.figure("residual", residual);
+    stage.figure("unshot", unshot);
+    stage.figure("solver error", solver_error);
     stage.figure("error estimate", error);
     stage.record().set("counts/frames_not_converged", not_converged);
     if (error > target)

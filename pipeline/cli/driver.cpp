@@ -27,6 +27,7 @@ struct StageCall {
     const char* record;
     const char* summary;
     std::vector<const char*> options; ///< of `kinelux run` that this stage knows
+    bool resumes = false;             ///< knows --resume
 };
 
 const std::array<StageCall, 7>& stage_calls() {
@@ -39,7 +40,7 @@ const std::array<StageCall, 7>& stage_calls() {
         {"cluster", "cluster.json", "cuts patches into elements, gathers small triangles into clusters", {}},
         {"plan", "plan-record.json", "decides which effects the scene calls for", {}},
         {"coefficients", "coefficients.json", "computes the transport blocks", {"seed", "memory-limit"}},
-        {"solve", "solve.json", "solves for the light of every frame", {"seed", "frames"}},
+        {"solve", "solve.json", "solves for the light of every frame", {"seed", "frames"}, true},
         {"export", "export.json", "writes fields, meters and the ParaView script", {"seed", "frames"}},
     }};
     return calls;
@@ -116,7 +117,10 @@ int RunTable::run_until(const std::string& last) const {
     for (const StageCall& stage : stage_calls()) {
         Stage::throw_if_stopped();
         std::vector<std::string> arguments = stage_arguments(stage.name);
-        if (!force_) arguments.emplace_back("--if-stale");
+        if (!force_)
+            arguments.emplace_back("--if-stale");
+        else if (stage.resumes)
+            arguments.insert(arguments.end(), {"--resume", "no"});
         const int code = call_program(fmt::format("kinelux-{}", stage.name), arguments);
         if (code != 0 && code != static_cast<int>(core::ExitCode::NotConverged)) return code;
         result = std::max(result, code);

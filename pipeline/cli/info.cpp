@@ -141,10 +141,11 @@ std::string of_coefficients(const io::Hdf5Reader& file) {
 std::string of_solution(const io::Hdf5Reader& file) {
     const model::Solution solution = io::get_solution(file);
     Facts facts;
-    double residual = 0.0, error = 0.0;
+    double residual = 0.0, solver_error = 0.0, error = 0.0;
     bool converged = true;
     for (const model::FrameSolution& frame : solution.frames) {
         residual = std::max(residual, frame.residual);
+        solver_error = std::max(solver_error, frame.solver_error);
         error = std::max(error, frame.error_estimate);
         converged = converged && frame.converged;
     }
@@ -152,6 +153,7 @@ std::string of_solution(const io::Hdf5Reader& file) {
     facts.add("channels", solution.channels);
     facts.add("unknowns", solution.layout.unknowns());
     facts.add("residual", fmt::format("{:.2g} at most{}", residual, converged ? "" : ", NOT CONVERGED"));
+    facts.add("solver error", fmt::format("{:.2g} % at most", 100.0 * solver_error));
     facts.add("error estimate", fmt::format("{:.2g} % at most", 100.0 * error));
     return facts.text();
 }
@@ -161,11 +163,12 @@ std::string of_hdf5(const fs::path& path) {
     const io::FileHeader header{
         .format = file.text("format"), .version = file.integer("version"), .program = file.text("program")};
     using Describe = std::string (*)(const io::Hdf5Reader&);
-    static constexpr std::array<std::pair<const char*, Describe>, 4> kinds{
+    static constexpr std::array<std::pair<const char*, Describe>, 5> kinds{
         {{"kinelux-patches", of_patches},
          {"kinelux-clusters", of_clusters},
          {"kinelux-coefficients", of_coefficients},
-         {"kinelux-solution", of_solution}}};
+         {"kinelux-solution", of_solution},
+         {"kinelux-solution-so-far", of_solution}}};
     for (const auto& [format, describe] : kinds)
         if (header.format == format)
             return fmt::format("{}: {}\n{}", path.string(), origin(header), describe(file));

@@ -108,7 +108,7 @@ int run_program(const std::string& name, int argc, char** argv,
         return body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
     } catch (const Interrupted&) {
         return fail(name,
-                    "interrupted; nothing that was there is lost. The same command starts this step again, "
+                    "interrupted; nothing that was there is lost. The same command takes this step up again, "
                     "kinelux run goes on with what is missing",
                     128 + stop_signal());
     } catch (const core::Error& error) {

@@ -77,6 +77,15 @@ std::optional<FrameRange>& Stage::add_frames(const std::string& help, const std:
     return frames_;
 }
 
+void Stage::add_resume() {
+    resume_ = "yes";
+    options_.add({.member = &resume_,
+                  .flags = "--resume",
+                  .help = "go on from what an interrupted run has saved; compute nothing that is there",
+                  .words = {"yes", "no"},
+                  .decides = Decides::Manners});
+}
+
 int Stage::run(int argc, char** argv, const std::function<core::ExitCode(Stage&)>& work) {
     return run_program(program_, argc, argv, [&](const std::vector<std::string>& arguments) {
         if (options_.parse(arguments) == OptionTable::Parsed::Answered) return 0;
@@ -113,7 +122,7 @@ int Stage::work_on(const std::function<core::ExitCode(Stage&)>& work) {
 bool Stage::unchanged(const std::string& input_fingerprint) {
     key_ = core::content_hash(fmt::format("{} {}\n{}\n{}", program_, core::file_hash("/proc/self/exe"),
                                           options_.effective(), input_fingerprint));
-    if (if_stale_ && up_to_date(key_)) {
+    if ((if_stale_ || resumes()) && up_to_date(key_)) {
         core::log_info(fmt::format("{}: up to date", program_));
         return unchanged_ = true;
     }

@@ -39,6 +39,8 @@ public:
     std::uint64_t& add_seed(); ///< adds --seed
     std::optional<FrameRange>& add_frames(const std::string& help,
                                           const std::string& unset = "all"); ///< adds --frames
+    /// Adds --resume for a stage that saves what it has done. With it the stage does nothing when its result is there.
+    void add_resume();
 
     /// The whole program: parses, prints the options, works, writes the record, reports. @return  exit code
     int run(int argc, char** argv, const std::function<core::ExitCode(Stage&)>& work);
@@ -47,6 +49,9 @@ public:
     const io::CaseFolder& folder() const { return *folder_; }
     core::RunRecord& record() { return record_; }
     bool quiet() const { return quiet_; }
+    bool resumes() const { return resume_ == "yes"; }
+    /// A hash of the executable, of all options that decide the result, and of the content of the input.
+    const std::string& key() const { return key_; }
 
     // For stages that start from a scene.
     /// Whether the case at `path` holds the result of these inputs and --if-stale was given; finish() is then all
@@ -88,7 +93,7 @@ private:
     std::uint64_t threads_ = 0, seed_ = 1;
     std::optional<FrameRange> frames_;
     bool quiet_ = false, verbose_ = false, if_stale_ = false, unchanged_ = false;
-    std::string summary_, key_;
+    std::string summary_, key_, resume_ = "no";
 };
 
 /// The options that every program has: --threads, --quiet, --verbose, --log-file.

@@ -40,6 +40,8 @@ constexpr FileKind plan_kind{"plan.json", "kinelux-plan", "kinelux-plan", &clust
 constexpr FileKind coefficients_kind{"coefficients.h5", "kinelux-coefficients", "kinelux-coefficients",
                                      &plan_kind};
 constexpr FileKind solution_kind{"solution.h5", "kinelux-solution", "kinelux-solve", &coefficients_kind};
+constexpr FileKind so_far_kind{"solution-so-far.h5", "kinelux-solution-so-far", "kinelux-solve",
+                               &coefficients_kind};
 
 std::string what_to_do(const FileKind& kind, const fs::path& folder) {
     if (kind.predecessor == nullptr) return fmt::format("run {} on the scene again", kind.stage);
@@ -249,6 +251,26 @@ void CaseFolder::write_coefficients(const model::Coefficients& coefficients) con
 
 void CaseFolder::write_solution(const model::Solution& solution) const {
     write_hdf5(solution_kind, folder_, [&](Hdf5Writer& file) { put_solution(file, solution); });
+    std::error_code ignored;
+    fs::remove(folder_ / so_far_kind.name, ignored);
+}
+
+void CaseFolder::write_solution_so_far(const model::Solution& solution, const model::SolverState& state,
+                                       const std::string& key) const {
+    write_hdf5(so_far_kind, folder_, [&](Hdf5Writer& file) {
+        file.attribute("key", key);
+        put_solution_so_far(file, solution, state);
+    });
+}
+
+std::optional<model::SolutionSoFar> CaseFolder::read_solution_so_far(const std::string& key) const {
+    if (!fs::is_regular_file(folder_ / so_far_kind.name)) return std::nullopt;
+    return guarded(so_far_kind, folder_, [&]() -> std::optional<model::SolutionSoFar> {
+        check_header(read_header(so_far_kind, folder_), so_far_kind);
+        const Hdf5Reader file(folder_ / so_far_kind.name);
+        if (file.text("key") != key) return std::nullopt;
+        return get_solution_so_far(file);
+    });
 }
 
 } // namespace kinelux::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "model/cluster_tree.h"
@@ -43,7 +44,15 @@ public:
     void write_clusters(const model::ClusterTree& tree, const model::PatchSet& patches) const;
     void write_plan(const model::Plan& plan) const;
     void write_coefficients(const model::Coefficients& coefficients) const;
-    void write_solution(const model::Solution& solution) const;
+    void write_solution(const model::Solution& solution) const; ///< and removes solution-so-far.h5
+
+    /// What an interrupted solve has left: solution-so-far.h5.
+    /// @param key  a hash of all that decides the result
+    void write_solution_so_far(const model::Solution& solution, const model::SolverState& state,
+                               const std::string& key) const;
+    /// @return  nothing when there is none, or one with another key
+    /// @throws FileError  damaged
+    std::optional<model::SolutionSoFar> read_solution_so_far(const std::string& key) const;
 
 private:
     std::filesystem::path folder_;

@@ -472,9 +472,10 @@ void put_solution(Hdf5Writer& file, const model::Solution& solution) {
     file.dataset("layout/offsets", solution.layout.offsets);
     put_number<std::uint32_t>(file, "frame", solution, &FrameSolution::frame);
     put_number<double>(file, "time_s", solution, &FrameSolution::time_s);
-    put_number<std::uint32_t>(file, "sweeps", solution, &FrameSolution::sweeps);
+    put_number<double>(file, "sweeps", solution, &FrameSolution::sweeps);
     put_number<double>(file, "residual", solution, &FrameSolution::residual);
     put_number<double>(file, "unshot", solution, &FrameSolution::unshot);
+    put_number<double>(file, "solver_error", solution, &FrameSolution::solver_error);
     put_number<double>(file, "error_estimate", solution, &FrameSolution::error_estimate);
     put_number<std::uint8_t>(file, "converged", solution, &FrameSolution::converged);
     put_number<std::uint32_t>(file, "blocks_recomputed", solution, &FrameSolution::blocks_recomputed);
@@ -492,9 +493,10 @@ model::Solution get_solution(const Hdf5Reader& file) {
     solution.frames.resize(file.shape("frame").front());
     get_number<std::uint32_t>(file, "frame", solution, &FrameSolution::frame);
     get_number<double>(file, "time_s", solution, &FrameSolution::time_s);
-    get_number<std::uint32_t>(file, "sweeps", solution, &FrameSolution::sweeps);
+    get_number<double>(file, "sweeps", solution, &FrameSolution::sweeps);
     get_number<double>(file, "residual", solution, &FrameSolution::residual);
     get_number<double>(file, "unshot", solution, &FrameSolution::unshot);
+    get_number<double>(file, "solver_error", solution, &FrameSolution::solver_error);
     get_number<double>(file, "error_estimate", solution, &FrameSolution::error_estimate);
     get_number<std::uint8_t>(file, "converged", solution, &FrameSolution::converged);
     get_number<std::uint32_t>(file, "blocks_recomputed", solution, &FrameSolution::blocks_recomputed);
@@ -504,6 +506,38 @@ model::Solution get_solution(const Hdf5Reader& file) {
     get_frames(file, "irradiance_indirect", solution, &FrameSolution::irradiance_indirect, field);
     get_frames(file, "element_error", solution, &FrameSolution::element_error, {solution.layout.elements()});
     return solution;
+}
+
+void put_solution_so_far(Hdf5Writer& file, const model::Solution& solution, const model::SolverState& state) {
+    put_solution(file, solution);
+    put_number<double>(file, "seconds", solution, &FrameSolution::seconds);
+    file.attribute("frames_since_exact", std::int64_t{state.frames_since_exact});
+    file.attribute("frames_kept", static_cast<std::int64_t>(state.reflected.size()));
+    for (std::size_t f = 0; f < state.reflected.size(); ++f) {
+        file.dataset(fmt::format("state/reflected_{}", f), state.reflected[f]);
+        file.dataset(fmt::format("state/irradiance_{}", f), state.irradiance[f]);
+    }
+    file.dataset("state/mode_shape", state.mode.shape);
+    file.dataset("state/mode_image", state.mode.image);
+    file.dataset("state/mode_margin", state.mode.margin);
+    file.dataset("state/mode_second", state.mode.second);
+}
+
+model::SolutionSoFar get_solution_so_far(const Hdf5Reader& file) {
+    model::SolutionSoFar so_far{.solution = get_solution(file), .state = {}};
+    get_number<double>(file, "seconds", so_far.solution, &FrameSolution::seconds);
+    model::SolverState& state = so_far.state;
+    state.frames_since_exact = static_cast<std::uint32_t>(file.integer("frames_since_exact"));
+    const std::int64_t kept = file.integer("frames_kept");
+    for (std::int64_t f = 0; f < kept; ++f) {
+        state.reflected.push_back(file.dataset<double>(fmt::format("state/reflected_{}", f)));
+        state.irradiance.push_back(file.dataset<double>(fmt::format("state/irradiance_{}", f)));
+    }
+    state.mode = {.shape = file.dataset<double>("state/mode_shape"),
+                  .image = file.dataset<double>("state/mode_image"),
+                  .margin = file.dataset<double>("state/mode_margin"),
+                  .second = file.dataset<double>("state/mode_second")};
+    return so_far;
 }
 
 } // namespace kinelux::io

@@ -24,4 +24,8 @@ model::Coefficients get_coefficients(const Hdf5Reader& file);
 void put_solution(Hdf5Writer& file, const model::Solution& solution);
 model::Solution get_solution(const Hdf5Reader& file);
 
+/// A solution of which the first frames are done, with what the solver needs to go on.
+void put_solution_so_far(Hdf5Writer& file, const model::Solution& solution, const model::SolverState& state);
+model::SolutionSoFar get_solution_so_far(const Hdf5Reader& file);
+
 } // namespace kinelux::io

@@ -8,10 +8,12 @@
 #include <string_view>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "core/error.h"
 #include "core/hash.h"
@@ -136,6 +138,14 @@ bool seal_is_whole(const std::filesystem::path& file) {
            found == wanted;
 }
 
+/// What a file holds is on the disk, not only with the system, when this is true.
+bool reaches_disk(const std::filesystem::path& file) {
+    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const bool done = fsync(descriptor) == 0;
+    return close(descriptor) == 0 && done;
+}
+
 hid_t create_file(const std::filesystem::path& file) {
     const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_userblock(properties, user_block);
@@ -234,7 +244,7 @@ void Hdf5Writer::write(const std::string& name, Hdf5Type type, const void* value
 void Hdf5Writer::finish() {
     const hid_t handle = std::exchange(handle_, -1);
     const bool whole = H5Fflush(handle, H5F_SCOPE_GLOBAL) >= 0;
-    if (H5Fclose(handle) < 0 || !whole || !seal(part_)) {
+    if (H5Fclose(handle) < 0 || !whole || !seal(part_) || !reaches_disk(part_)) {
         std::error_code ignored;
         std::filesystem::remove(part_, ignored);
         throw cannot_write(file_);

@@ -66,7 +66,7 @@ public:
     void dataset(const std::string& name, const std::vector<Vec3>& values);
     void dataset(const std::string& name, const std::vector<std::array<std::uint32_t, 3>>& values);
 
-    /// Closes and renames. @throws FileError  e.g. the disk is full
+    /// Closes, waits for the disk, and renames. @throws FileError  e.g. the disk is full
     void finish();
 
 private:

@@ -28,6 +28,10 @@ public:
     /// @param time_s  of the frame [s]
     /// @param poses   world_from_rest, one per object of the scene
     virtual FrameBlocks advance(double time_s, std::span<const geometry::Pose> poses) = 0;
+
+    /// Whether the blocks of a frame depend on the frames asked for before. An animation that is taken up again leads
+    /// such an engine through those first.
+    virtual bool remembers() const { return true; }
 };
 
 } // namespace kinelux::motion

@@ -22,6 +22,7 @@ public:
                 visibility::Occluders& occluders, const kernel::TransportOptions& options);
 
     FrameBlocks advance(double time_s, std::span<const geometry::Pose> poses) override;
+    bool remembers() const override { return false; }
 
 private:
     const model::Coefficients& coefficients_;

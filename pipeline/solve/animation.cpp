@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "geometry/pose.h"
 #include "model/hierarchy.h"
+#include "solve/vectors.h"
 
 namespace kinelux::solve {
 
@@ -14,78 +16,80 @@ namespace {
 
 using model::FrameSolution;
 
-double square_sum(std::span<const double> values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
-    return sum;
-}
-
-/// Materials spread over the elements. Where all channels are proportional only the first is solved, and `scale` leads
-/// back to the others.
-struct Light {
+/// How the elements reflect. Where all channels are proportional only the first is solved, and `scale` leads back to the
+/// others.
+struct Surfaces {
     std::size_t channels = 0;        ///< solved
-    std::vector<double> exitance;    ///< M as coefficients, unknowns x channels [W/m2 or lm/m2]
     std::vector<double> reflectance; ///< elements x channels [1]
     std::vector<double> scale;       ///< per channel of the scene; empty: all are solved [1]
     std::vector<bool> emits;         ///< per element
 };
 
-Light light_of(const Animation& animation) {
+Surfaces surfaces_of(const Animation& animation) {
     const auto& materials = animation.scene.materials;
-    Light light;
-    light.channels = animation.plan.single_channel ? 1 : animation.scene.channels.size();
-    std::vector<double> exitance;
+    Surfaces surfaces;
+    surfaces.channels = animation.plan.single_channel ? 1 : animation.scene.channels.size();
     for (const model::Element& element : animation.elements) {
         const model::Material& material = materials[element.material.value];
-        exitance.insert(exitance.end(), material.exitance.begin(),
-                        material.exitance.begin() + static_cast<std::ptrdiff_t>(light.channels));
-        light.reflectance.insert(light.reflectance.end(), material.reflectance.begin(),
-                                 material.reflectance.begin() + static_cast<std::ptrdiff_t>(light.channels));
-        light.emits.push_back(material.emits());
-        if (animation.plan.single_channel && light.scale.empty() && material.exitance.front() > 0.0)
+        surfaces.reflectance.insert(surfaces.reflectance.end(), material.reflectance.begin(),
+                                    material.reflectance.begin() +
+                                        static_cast<std::ptrdiff_t>(surfaces.channels));
+        surfaces.emits.push_back(material.emits());
+        if (animation.plan.single_channel && surfaces.scale.empty() && material.exitance.front() > 0.0)
             for (const double value : material.exitance)
-                light.scale.push_back(value / material.exitance.front());
+                surfaces.scale.push_back(value / material.exitance.front());
     }
-    if (animation.plan.single_channel) light.scale.resize(animation.scene.channels.size(), 0.0);
-    light.exitance =
-        constant_coefficients(animation.coefficients.layout, light.channels, animation.areas, exitance);
-    return light;
+    if (animation.plan.single_channel) surfaces.scale.resize(animation.scene.channels.size(), 0.0);
+    return surfaces;
+}
+
+/// M of one frame as coefficients, unknowns x channels [W/m2 or lm/m2].
+std::vector<double> exitance_of(const Animation& animation, std::size_t channels) {
+    std::vector<double> exitance;
+    for (const model::Element& element : animation.elements) {
+        const std::vector<double>& values = animation.scene.materials[element.material.value].exitance;
+        exitance.insert(exitance.end(), values.begin(),
+                        values.begin() + static_cast<std::ptrdiff_t>(channels));
+    }
+    return constant_coefficients(animation.coefficients.layout, channels, animation.areas, exitance);
 }
 
 /// One bounce is left out, so is all that follows it: B = M + rho G M.
-FrameSolution direct_only(const TransportOperator& transport, const Light& light) {
+FrameSolution direct_only(const TransportOperator& transport, const Surfaces& surfaces,
+                          std::span<const double> exitance) {
     const auto& layout = transport.layout();
     FrameSolution frame;
-    frame.irradiance_direct.resize(light.exitance.size());
-    apply(transport, light.channels, light.exitance, frame.irradiance_direct);
-    frame.irradiance_indirect.assign(light.exitance.size(), 0.0);
-    frame.radiosity = light.exitance;
+    frame.irradiance_direct.resize(exitance.size());
+    apply(transport, surfaces.channels, exitance, frame.irradiance_direct);
+    frame.irradiance_indirect.assign(exitance.size(), 0.0);
+    frame.radiosity.assign(exitance.begin(), exitance.end());
     for (std::size_t e = 0; e < layout.elements(); ++e)
         for (std::size_t u = layout.offsets[e]; u < layout.offsets[e + 1]; ++u)
-            for (std::size_t c = 0; c < light.channels; ++c)
-                frame.radiosity[u * light.channels + c] += light.reflectance[e * light.channels + c] *
-                                                           frame.irradiance_direct[u * light.channels + c];
+            for (std::size_t c = 0; c < surfaces.channels; ++c)
+                frame.radiosity[u * surfaces.channels + c] +=
+                    surfaces.reflectance[e * surfaces.channels + c] *
+                    frame.irradiance_direct[u * surfaces.channels + c];
     frame.sweeps = 1;
     return frame;
 }
 
 /// Relative L2 error of radiosity over the elements that do not emit. An error of irradiance is reflected again and
 /// again: at most 1 / (1 - rho) times as much arrives in the end, rho being the mean reflectance.
-double radiosity_error(const model::UnknownLayout& layout, const Light& light, std::span<const double> areas,
-                       const FrameSolution& frame) {
+double radiosity_error(const model::UnknownLayout& layout, const Surfaces& surfaces,
+                       std::span<const double> areas, const FrameSolution& frame) {
     double error = 0.0, size = 0.0, reflected = 0.0, area = 0.0;
     for (std::size_t e = 0; e < layout.elements(); ++e) {
-        const auto rho = std::span(light.reflectance).subspan(e * light.channels, light.channels);
-        const double rho_square = square_sum(rho) / static_cast<double>(light.channels);
+        const auto rho = std::span(surfaces.reflectance).subspan(e * surfaces.channels, surfaces.channels);
+        const double rho_square = square_sum(rho) / static_cast<double>(surfaces.channels);
         reflected += std::sqrt(rho_square) * areas[e];
         area += areas[e];
-        if (light.emits[e]) continue;
+        if (surfaces.emits[e]) continue;
         const double irradiance_error = static_cast<double>(frame.element_error[e]);
         error += rho_square * irradiance_error * irradiance_error * areas[e];
-        size +=
-            square_sum(std::span(frame.radiosity)
-                           .subspan(layout.offsets[e] * light.channels, layout.count(e) * light.channels)) /
-            static_cast<double>(light.channels);
+        size += square_sum(std::span(frame.radiosity)
+                               .subspan(layout.offsets[e] * surfaces.channels,
+                                        layout.count(e) * surfaces.channels)) /
+                static_cast<double>(surfaces.channels);
     }
     if (!(size > 0.0)) return 0.0;
     return std::sqrt(error / size) / (1.0 - reflected / area);
@@ -100,11 +104,11 @@ std::vector<double> spread(std::span<const double> values, std::span<const doubl
 }
 
 /// One solved channel becomes all channels of the scene.
-void spread_channels(const Light& light, FrameSolution& frame) {
-    if (light.scale.empty()) return;
+void spread_channels(const Surfaces& surfaces, FrameSolution& frame) {
+    if (surfaces.scale.empty()) return;
     for (auto* values : {&frame.radiosity, &frame.irradiance_direct, &frame.irradiance_indirect})
-        *values = spread(*values, light.scale);
-    const double rms = std::sqrt(square_sum(light.scale) / static_cast<double>(light.scale.size()));
+        *values = spread(*values, surfaces.scale);
+    const double rms = std::sqrt(square_sum(surfaces.scale) / static_cast<double>(surfaces.scale.size()));
     for (float& error : frame.element_error) error = static_cast<float>(rms * static_cast<double>(error));
 }
 
@@ -129,27 +133,6 @@ std::vector<model::BlockEntry> entries_at(const model::BlockSet& static_blocks,
 }
 
 } // namespace
-
-double residual_tolerance(const model::Scene& scene, std::span<const model::Element> elements,
-                          std::span<const double> areas) {
-    constexpr double least = 1e-12, most = 1e-4, usual = 0.01, of_bounces = 0.1; // of the accuracy
-    double emitted2 = 0.0, bounced2 = 0.0;
-    for (std::size_t c = 0; c < scene.channels.size(); ++c) {
-        double area = 0.0, flux = 0.0, reflected = 0.0;
-        for (std::size_t e = 0; e < elements.size(); ++e) {
-            const model::Material& material = scene.materials[elements[e].material.value];
-            area += areas[e];
-            flux += areas[e] * material.exitance[c];
-            reflected += areas[e] * material.reflectance[c];
-            emitted2 += areas[e] * material.exitance[c] * material.exitance[c];
-        }
-        bounced2 += std::pow(flux * reflected / area, 2.0) / area;
-    }
-    const double target = scene.accuracy.target;
-    const double tolerance = std::min(most, usual * target);
-    if (!(bounced2 > 0.0)) return tolerance;
-    return std::max(std::min(tolerance, of_bounces * target * std::sqrt(bounced2 / emitted2)), least);
-}
 
 model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame) {
     model::BlockSet result;
@@ -244,51 +227,100 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     return result;
 }
 
+namespace {
+
+/// The frames of one animation: what they have in common, and what changes from one to the next.
+class Frames {
+public:
+    Frames(const Animation& animation, motion::Engine& engine, const SolveOptions& options)
+        : animation_(animation),
+          engine_(engine),
+          surfaces_(surfaces_of(animation)),
+          solver_(surfaces_.channels, surfaces_.reflectance, {animation.areas.begin(), animation.areas.end()},
+                  options),
+          blocks_(animation.coefficients.layout, animation.coefficients.static_blocks),
+          linked_(blocks_, animation.coefficients.hierarchy) {}
+
+    /// Brings engine and solver to where they were after the frames that are done.
+    void take_up(std::span<const FrameSolution> done, model::SolverState state) {
+        const std::size_t first = engine_.remembers() ? 0 : done.size() - 1;
+        for (std::size_t f = first; f < done.size(); ++f) advance(done[f].time_s);
+        if (!state.empty()) solver_.restore(std::move(state), transport());
+    }
+
+    FrameSolution solve(std::uint32_t number, double time_s) {
+        const std::vector<model::BlockEntry> entries = advance(time_s);
+        const std::vector<double> exitance = exitance_of(animation_, surfaces_.channels);
+        FrameSolution frame = animation_.plan.bounces == 0 ? direct_only(transport(), surfaces_, exitance)
+                                                           : solver_.solve_frame(transport(), exitance);
+        const model::Coefficients& coefficients = animation_.coefficients;
+        frame.frame = number;
+        frame.time_s = time_s;
+        frame.blocks_recomputed = recomputed_;
+        frame.element_error = irradiance_errors(coefficients.layout, entries, animation_.areas, exitance,
+                                                frame, surfaces_.channels, coefficients.hierarchy);
+        frame.error_estimate = radiosity_error(coefficients.layout, surfaces_, animation_.areas, frame);
+        spread_channels(surfaces_, frame);
+        return frame;
+    }
+
+    const model::SolverState& state() const { return solver_.state(); }
+
+private:
+    const TransportOperator& transport() const {
+        if (animation_.coefficients.hierarchy.empty()) return blocks_;
+        return linked_;
+    }
+
+    /// The blocks of a time. @return  the entries of all of them
+    std::vector<model::BlockEntry> advance(double time_s) {
+        motion::FrameBlocks changed =
+            engine_.advance(time_s, geometry::object_poses(animation_.scene, time_s));
+        recomputed_ = static_cast<std::uint32_t>(changed.computed);
+        std::vector<model::BlockEntry> entries = entries_at(animation_.coefficients.static_blocks, changed);
+        blocks_.replace(changed.pairs, std::move(changed.blocks));
+        return entries;
+    }
+
+    const Animation& animation_;
+    motion::Engine& engine_;
+    const Surfaces surfaces_;
+    TemporalSolver solver_;
+    BlockOperator blocks_;
+    const LinkedOperator linked_;
+    std::uint32_t recomputed_ = 0;
+};
+
+} // namespace
+
 model::Solution solve_animation(const Animation& animation, motion::Engine& engine,
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
-                                const std::function<void(const FrameSolution&)>& progress) {
-    const model::Coefficients& coefficients = animation.coefficients;
-    const Light light = light_of(animation);
-    TemporalSolver solver(light.channels, light.exitance, light.reflectance,
-                          {animation.areas.begin(), animation.areas.end()}, options);
-    BlockOperator blocks(coefficients.layout, coefficients.static_blocks);
-    const LinkedOperator linked(blocks, coefficients.hierarchy);
-    const TransportOperator& transport =
-        coefficients.hierarchy.empty() ? static_cast<const TransportOperator&>(blocks) : linked;
-    model::Solution solution{.layout = coefficients.layout,
+                                const std::function<void(const FrameSolution&)>& progress,
+                                Checkpoint checkpoint) {
+    model::Solution solution{.layout = animation.coefficients.layout,
                              .channels = static_cast<std::uint32_t>(animation.scene.channels.size()),
-                             .frames = {}};
-    for (const std::uint32_t number : frames) {
+                             .frames = std::move(checkpoint.from.solution.frames)};
+    const bool moves = !animation.plan.moving_objects.empty();
+    Frames all(animation, engine, options);
+    if (moves && !solution.frames.empty()) all.take_up(solution.frames, std::move(checkpoint.from.state));
+    for (const std::uint32_t number : frames.subspan(solution.frames.size())) {
         const auto started = std::chrono::steady_clock::now();
         const double time_s = animation.scene.time.time_of_frame(number);
-        if (animation.plan.moving_objects.empty() && !solution.frames.empty()) {
+        if (!moves && !solution.frames.empty()) {
             // Nothing moves: the first frame is every frame.
             FrameSolution same = solution.frames.front();
             same.frame = number;
             same.time_s = time_s;
-            same.sweeps = 0;
+            same.sweeps = 0.0;
             same.seconds = 0.0;
-            progress(same);
             solution.frames.push_back(std::move(same));
-            continue;
+        } else {
+            solution.frames.push_back(all.solve(number, time_s));
+            solution.frames.back().seconds =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
         }
-        const motion::FrameBlocks changed =
-            engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
-        blocks.replace(changed.pairs, changed.blocks);
-
-        FrameSolution frame =
-            animation.plan.bounces == 0 ? direct_only(transport, light) : solver.solve_frame(transport);
-        frame.frame = number;
-        frame.time_s = time_s;
-        frame.blocks_recomputed = static_cast<std::uint32_t>(changed.computed);
-        frame.element_error =
-            irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
-                              animation.areas, light.exitance, frame, light.channels, coefficients.hierarchy);
-        frame.error_estimate = radiosity_error(coefficients.layout, light, animation.areas, frame);
-        spread_channels(light, frame);
-        frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-        progress(frame);
-        solution.frames.push_back(std::move(frame));
+        if (checkpoint.save) checkpoint.save(solution, all.state());
+        progress(solution.frames.back());
     }
     return solution;
 }

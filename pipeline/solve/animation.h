@@ -25,23 +25,24 @@ struct Animation {
     std::span<const double> areas;            ///< one per element [m2]
 };
 
+/// How an animation is interrupted and taken up again.
+struct Checkpoint {
+    model::SolutionSoFar from = {}; ///< of the first of the same frames; empty: begin at the first
+    /// Called after each frame with all that is done so far.
+    std::function<void(const model::Solution&, const model::SolverState&)> save = {};
+};
+
 /// Solves the frames one after the other: the blocks of each from the engine, the light from the frames before it.
 /// Scenes in which all channels are proportional are solved once and scaled; a plan without bounces gives the direct
 /// light alone. Each frame carries its error estimate: of irradiance per element from the errors of the blocks and the
 /// residual, of radiosity over all.
 /// @param frames    numbers of the frames to solve, ascending
-/// @param progress  called after each frame; what it throws ends the work
+/// @param progress  called after each frame and after `save`; what it throws ends the work
+/// @param checkpoint  an animation taken up again gives the bytes of one that was never interrupted
 model::Solution solve_animation(const Animation& animation, motion::Engine& engine,
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
-                                const std::function<void(const model::FrameSolution&)>& progress);
-
-/// The residual, relative to the exitance, at which the solver's error is far below a scene's accuracy: a hundredth of
-/// it, at most 1e-4; less where lamps are small, since the light that walls send back is little beside what lamps emit.
-/// With an even distribution it is rho Phi / ((1 - rho) sqrt(A)) in the L2 norm, Phi the flux emitted, and a residual
-/// grows to at most 1 / (1 - rho) of itself: a tenth of the accuracy is asked for.
-/// @return  [1], 1e-12..1e-4
-double residual_tolerance(const model::Scene& scene, std::span<const model::Element> elements,
-                          std::span<const double> areas);
+                                const std::function<void(const model::FrameSolution&)>& progress,
+                                Checkpoint checkpoint = {});
 
 /// All blocks as they are at one time: the static ones, with those of `frame` in their place.
 model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame);

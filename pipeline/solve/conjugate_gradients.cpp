@@ -2,35 +2,13 @@
 // Key: S = sqrt(rho); c the unknown; r = S G M - (I - S G S) c its residual, S r that of B; p the direction; q = p - S G S p.
 #include "solve/conjugate_gradients.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "solve/vectors.h"
 
 namespace kinelux::solve {
 
 namespace {
-
-// Per unknown and channel: the root of the reflectance.
-std::vector<double> reflectance_roots(const System& system) {
-    const auto& layout = system.transport.layout();
-    std::vector<double> roots(system.exitance.size());
-    for (std::size_t i = 0; i < layout.elements(); ++i)
-        for (std::size_t u = layout.offsets[i]; u < layout.offsets[i + 1]; ++u)
-            for (std::size_t c = 0; c < system.channels; ++c)
-                roots[u * system.channels + c] = std::sqrt(system.reflectance[i * system.channels + c]);
-    return roots;
-}
-
-std::vector<double> dots(std::size_t channels, std::span<const double> x, std::span<const double> y) {
-    std::vector<double> sums(channels, 0.0);
-    for (std::size_t k = 0; k < x.size(); ++k) sums[k % channels] += x[k] * y[k];
-    return sums;
-}
-
-double norm_of_product(std::span<const double> x, std::span<const double> y) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k] * x[k] * y[k];
-    return std::sqrt(sum);
-}
 
 double ratio(double numerator, double denominator) {
     return denominator > 0.0 ? numerator / denominator : 0.0;
@@ -38,24 +16,33 @@ double ratio(double numerator, double denominator) {
 
 class Iteration {
 public:
-    Iteration(const System& system, SystemSolution& solution)
-        : system_(system), solution_(solution), roots_(reflectance_roots(system)), scaled_(roots_.size()) {}
-
-    // c and r from the radiosity: where nothing is reflected the radiosity is the exitance.
-    void start() {
-        const std::size_t n = roots_.size();
-        unknown_.assign(n, 0.0);
-        for (std::size_t k = 0; k < n; ++k)
-            if (roots_[k] > 0.0) unknown_[k] = (solution_.radiosity[k] - system_.exitance[k]) / roots_[k];
-        update_radiosity();
-        update_irradiance();
-        residual_.resize(n);
-        for (std::size_t k = 0; k < n; ++k) residual_[k] = roots_[k] * solution_.irradiance[k] - unknown_[k];
-        direction_ = residual_;
-        residual_square_ = dots(system_.channels, residual_, residual_);
+    Iteration(const System& system, const ErrorEstimate& estimate, SystemSolution& solution)
+        : system_(system),
+          estimate_(estimate),
+          solution_(solution),
+          roots_(system.exitance.size()),
+          scaled_(roots_.size()),
+          unknown_(roots_.size()),
+          residual_(roots_.size()) {
+        for_each_coefficient(
+            system.transport.layout(), system.channels,
+            [&](std::size_t k, std::size_t m, std::size_t) { roots_[k] = std::sqrt(system.reflectance[m]); });
     }
 
-    double residual_norm() const { return norm_of_product(roots_, residual_); }
+    // c and r from the radiosity and its irradiance.
+    void start() {
+        for (std::size_t k = 0; k < roots_.size(); ++k) {
+            unknown_[k] = roots_[k] > 0.0 ? (solution_.radiosity[k] - system_.exitance[k]) / roots_[k] : 0.0;
+            residual_[k] = roots_[k] * solution_.irradiance[k] - unknown_[k];
+        }
+        direction_ = residual_;
+        residual_square_ = channel_dots(system_.channels, residual_, residual_);
+    }
+
+    double error() {
+        for (std::size_t k = 0; k < roots_.size(); ++k) scaled_[k] = roots_[k] * residual_[k];
+        return estimate_.of(scaled_, solution_.radiosity);
+    }
 
     void step() {
         const std::size_t n = roots_.size(), channels = system_.channels;
@@ -63,21 +50,20 @@ public:
         system_.transport.apply(channels, scaled_, solution_.irradiance);
         std::vector<double>& image = scaled_;
         for (std::size_t k = 0; k < n; ++k) image[k] = direction_[k] - roots_[k] * solution_.irradiance[k];
-        const std::vector<double> curvature = dots(channels, direction_, image);
-        for (std::size_t k = 0; k < n; ++k) {
-            const double length = ratio(residual_square_[k % channels], curvature[k % channels]);
-            unknown_[k] += length * direction_[k];
-            residual_[k] -= length * image[k];
-        }
-        const std::vector<double> square = dots(channels, residual_, residual_);
-        for (std::size_t k = 0; k < n; ++k)
-            direction_[k] =
-                residual_[k] + ratio(square[k % channels], residual_square_[k % channels]) * direction_[k];
+        std::vector<double> length = channel_dots(channels, direction_, image);
+        for (std::size_t c = 0; c < channels; ++c) length[c] = ratio(residual_square_[c], length[c]);
+        for (std::size_t k = 0; k < n; k += channels)
+            for (std::size_t c = 0; c < channels; ++c) {
+                unknown_[k + c] += length[c] * direction_[k + c];
+                residual_[k + c] -= length[c] * image[k + c];
+            }
+        const std::vector<double> square = channel_dots(channels, residual_, residual_);
+        for (std::size_t k = 0; k < n; k += channels)
+            for (std::size_t c = 0; c < channels; ++c)
+                direction_[k + c] =
+                    residual_[k + c] + ratio(square[c], residual_square_[c]) * direction_[k + c];
         residual_square_ = square;
-    }
-
-    void update_radiosity() {
-        for (std::size_t k = 0; k < roots_.size(); ++k)
+        for (std::size_t k = 0; k < n; ++k)
             solution_.radiosity[k] = system_.exitance[k] + roots_[k] * unknown_[k];
     }
 
@@ -87,6 +73,7 @@ public:
 
 private:
     const System& system_;
+    const ErrorEstimate& estimate_;
     SystemSolution& solution_;
     std::vector<double> roots_, scaled_, unknown_, residual_, direction_;
     std::vector<double> residual_square_; ///< per channel
@@ -94,21 +81,20 @@ private:
 
 } // namespace
 
-void conjugate_gradients(const System& system, const SolveOptions& options, double scale,
+void conjugate_gradients(const System& system, const SolveOptions& options, const ErrorEstimate& estimate,
                          SystemSolution& solution) {
-    Iteration iteration(system, solution);
+    Iteration iteration(system, estimate, solution);
     iteration.start();
-    ++solution.sweeps;
     // The residual carried along drifts from the true one; a restart from the true one costs one product.
-    while (iteration.residual_norm() > options.tolerance * scale && solution.sweeps < options.max_sweeps) {
-        while (iteration.residual_norm() > options.tolerance * scale &&
-               solution.sweeps < options.max_sweeps) {
+    for (double again = 0.0; iteration.error() > options.tolerance && solution.sweeps < options.max_sweeps;
+         again = 1.0) {
+        solution.sweeps += again; // the product below was not the last one
+        do {
             iteration.step();
-            ++solution.sweeps;
-        }
-        iteration.update_radiosity();
+            solution.sweeps += 1.0;
+        } while (iteration.error() > options.tolerance && solution.sweeps < options.max_sweeps);
+        iteration.update_irradiance();
         iteration.start();
-        ++solution.sweeps;
     }
 }
 

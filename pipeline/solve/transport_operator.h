@@ -21,6 +21,13 @@ public:
     virtual void apply(std::size_t channels, std::span<const double> x, std::span<double> y) const = 0;
     /// The operator by rows, where rows of single elements can be had; else nothing.
     virtual const RowOperator* rows() const { return nullptr; }
+
+    /// Counts the states G has been in: what was computed from G at one version holds as long as it is the same.
+    virtual std::uint64_t version() const { return 0; }
+    /// y = (G - G before the last change of version) x. @param y  overwritten
+    virtual void apply_change(std::size_t channels, std::span<const double> x, std::span<double> y) const = 0;
+    /// What apply_change() reads, as a share of what apply() reads [1]; above 1 a new product is cheaper.
+    virtual double changed_share() const { return 0.0; }
 };
 
 /// A transport whose rows can be used one by one.
@@ -47,13 +54,16 @@ public:
     BlockOperator(const model::UnknownLayout& layout, const model::BlockSet& static_blocks);
 
     /// Replaces the blocks of `pairs` (sorted) by those in `blocks` (zero where it has none), until the next call.
-    void replace(std::span<const model::ElementPair> pairs, const model::BlockSet& blocks);
+    void replace(std::span<const model::ElementPair> pairs, model::BlockSet blocks);
 
     const model::UnknownLayout& layout() const override { return layout_; }
     void gather(std::size_t element, std::size_t channels, std::span<const double> x,
                 std::span<double> out) const override;
     void scatter(std::size_t element, std::size_t channels, std::span<const double> x_i,
                  std::span<double> y) const override;
+    std::uint64_t version() const override { return version_; }
+    void apply_change(std::size_t channels, std::span<const double> x, std::span<double> y) const override;
+    double changed_share() const override;
 
 private:
     struct Neighbour {
@@ -64,11 +74,18 @@ private:
     };
     using Rows = std::vector<std::vector<Neighbour>>;
     static Rows rows_of(const model::BlockSet& blocks, std::size_t elements);
-    void mark(std::uint32_t element, std::uint32_t neighbour, bool replaced);
+    void mark(const model::ElementPair& pair, bool replaced, Rows& changed);
+    void add_row(const std::vector<Neighbour>& row, std::size_t element, std::size_t channels,
+                 std::span<const double> x, std::span<double> out) const;
 
     const model::UnknownLayout& layout_;
-    Rows static_rows_, replacing_rows_; ///< per element, neighbours in increasing order
+    std::size_t static_values_;
+    model::BlockSet replacing_, replaced_before_; ///< blocks of this version and of the one before
+    Rows static_rows_, replacing_rows_;           ///< per element, neighbours in increasing order
+    Rows removed_rows_;                           ///< of `replaced_before_`
+    Rows static_left_, static_back_;              ///< static blocks that hold no longer, or again
     std::vector<model::ElementPair> replaced_;
+    std::uint64_t version_ = 0;
 };
 
 /// Blocks of elements and links between groups together. Has no rows: what one element receives from groups changes with
@@ -80,6 +97,12 @@ public:
 
     const model::UnknownLayout& layout() const override { return blocks_.layout(); }
     void apply(std::size_t channels, std::span<const double> x, std::span<double> y) const override;
+    std::uint64_t version() const override { return blocks_.version(); }
+    /// Links never change.
+    void apply_change(std::size_t channels, std::span<const double> x, std::span<double> y) const override {
+        blocks_.apply_change(channels, x, y);
+    }
+    double changed_share() const override { return blocks_.changed_share(); }
 
 private:
     const BlockOperator& blocks_;

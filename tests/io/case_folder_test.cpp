@@ -268,12 +268,39 @@ TEST_F(CaseFolderTest, solution_comes_back_exactly_without_its_seconds) {
         EXPECT_EQ(a.sweeps, b.sweeps);
         EXPECT_EQ(a.residual, b.residual);
         EXPECT_EQ(a.unshot, b.unshot);
+        EXPECT_EQ(a.solver_error, b.solver_error);
         EXPECT_EQ(a.error_estimate, b.error_estimate);
         EXPECT_TRUE(same_bits(a.element_error, b.element_error));
         EXPECT_EQ(a.converged, b.converged);
         EXPECT_EQ(a.blocks_recomputed, b.blocks_recomputed);
         EXPECT_EQ(a.seconds, 0.0);
     }
+}
+
+TEST_F(CaseFolderTest, solution_so_far_comes_back_exactly_for_its_key_and_goes_when_the_solution_is_written) {
+    const std::vector<double> some{0.1, -2.0 / 3.0, 1e-300};
+    const model::SolverState state{.reflected = {some, {1.0, 2.0, 3.0}},
+                                   .irradiance = {{4.0, 5.0, 6.0}, some},
+                                   .mode = {some, {7.0, 8.0, 9.0}, {0.25}, {0.5}},
+                                   .frames_since_exact = 17};
+    model::Solution solution = support::example_solution();
+    solution.frames.back().seconds = 0.125;
+    folder.write_solution_so_far(solution, state, "one key");
+    EXPECT_FALSE(folder.read_solution_so_far("another key").has_value());
+    const auto read = folder.read_solution_so_far("one key");
+    ASSERT_TRUE(read.has_value());
+    ASSERT_EQ(read->solution.frames.size(), solution.frames.size());
+    EXPECT_TRUE(same_bits(read->solution.frames.back().radiosity, solution.frames.back().radiosity));
+    EXPECT_EQ(read->solution.frames.back().seconds, 0.125);
+    EXPECT_EQ(read->state.reflected, state.reflected);
+    EXPECT_EQ(read->state.irradiance, state.irradiance);
+    EXPECT_EQ(read->state.mode.shape, state.mode.shape);
+    EXPECT_EQ(read->state.mode.image, state.mode.image);
+    EXPECT_EQ(read->state.mode.margin, state.mode.margin);
+    EXPECT_EQ(read->state.mode.second, state.mode.second);
+    EXPECT_EQ(read->state.frames_since_exact, 17u);
+    folder.write_solution(solution);
+    EXPECT_FALSE(folder.read_solution_so_far("one key").has_value());
 }
 
 TEST_F(CaseFolderTest, same_data_gives_the_same_bytes) {

@@ -162,7 +162,8 @@ inline model::Solution example_solution() {
             frame.irradiance_direct.push_back(awkward / (k + 1.0));
             frame.irradiance_indirect.push_back(-awkward * k);
         }
-        frame.sweeps = 5 + f;
+        frame.sweeps = 5.25 + f;
+        frame.solver_error = 1e-5 * awkward;
         frame.residual = 1e-7 * awkward;
         frame.unshot = 0.001 * awkward;
         frame.error_estimate = 0.01 * awkward;

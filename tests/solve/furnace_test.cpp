@@ -58,9 +58,8 @@ Glow glow_of(const model::PatchSet& set, model::Scene& scene, double accuracy, d
     const model::UnknownLayout& layout = glow.transport.layout;
     const BlockOperator blocks(layout, glow.transport.static_blocks);
     const auto exitance = constant_coefficients(layout, 1, glow.areas, emitted);
-    const auto solution =
-        solve_system({blocks, 1, exitance, reflectance, glow.areas},
-                     {.tolerance = residual_tolerance(scene, tree.elements, glow.areas)}, {});
+    const auto solution = solve_system({blocks, 1, exitance, reflectance, glow.areas},
+                                       {.tolerance = tolerance_for(accuracy)}, {});
     EXPECT_TRUE(solution.converged);
     glow.radiosity = solution.radiosity;
     for (std::size_t e = 0; e < glow.elements.size(); ++e)

@@ -78,12 +78,68 @@ TEST(Animation, a_scene_at_rest_is_solved_once_for_all_frames) {
     room.scene.time = {0.0, 2.0, 3};
     const auto frames = room.solve({0, 1, 2}).frames;
     ASSERT_EQ(frames.size(), 3u);
-    EXPECT_GT(frames[0].sweeps, 0u);
+    EXPECT_GT(frames[0].sweeps, 0.0);
     for (const std::uint32_t f : {1u, 2u}) {
-        EXPECT_EQ(frames[f].sweeps, 0u);
+        EXPECT_EQ(frames[f].sweeps, 0.0);
         EXPECT_EQ(frames[f].radiosity, frames[0].radiosity);
         EXPECT_EQ(frames[f].frame, f);
         EXPECT_EQ(frames[f].time_s, f);
+    }
+}
+
+/// The exact engine, noting the times it is asked for.
+class NotingEngine : public motion::Engine {
+public:
+    NotingEngine(motion::Engine& engine, bool has_memory) : engine_(engine), has_memory_(has_memory) {}
+    motion::FrameBlocks advance(double time_s, std::span<const geometry::Pose> poses) override {
+        times.push_back(time_s);
+        return engine_.advance(time_s, poses);
+    }
+    bool remembers() const override { return has_memory_; }
+    std::vector<double> times;
+
+private:
+    motion::Engine& engine_;
+    bool has_memory_;
+};
+
+TEST(Animation, taken_up_again_gives_the_same_frames_and_leads_engines_with_a_memory_through_those_before) {
+    Room room;
+    room.patches.patches.push_back(
+        support::rectangle(Vec3(0.2, 0.2, 0.5), Vec3(0.0, 0.3, 0.0), Vec3(0.3, 0.0, 0.0), ObjectId(1)));
+    room.scene.objects.resize(2);
+    room.scene.motions = {
+        {.name = "slide",
+         .keyframes = {{0.0, Vec3(0.0), Quat(1, 0, 0, 0)}, {1.0, Vec3(0.4, 0.0, 0.0), Quat(1, 0, 0, 0)}}}};
+    room.scene.objects[1].motion = MotionId(0);
+    room.scene.time = {0.0, 1.0, 6};
+    room.plan.moving_objects = {ObjectId(1)};
+    room.tree = support::uniform_elements(room.patches, 2);
+    const auto shapes = geometry::element_shapes(room.patches, room.tree, 1, 0);
+    visibility::Occluders occluders(visibility::bodies_of(room.patches, room.scene));
+    const auto options = coefficients::transport_options_for(room.scene, room.plan, shapes);
+    const auto blocks =
+        coefficients::compute_coefficients(shapes, room.scene, room.plan, occluders, options, 1e6);
+    motion::ExactEngine exact(blocks, shapes, room.plan, occluders, options);
+    std::vector<double> areas;
+    areas.reserve(shapes.size());
+    for (const auto& shape : shapes) areas.push_back(shape.area);
+    const solve::Animation animation{room.scene, room.plan, blocks, room.tree.elements, areas};
+    const std::vector<std::uint32_t> frames{0, 1, 2, 3, 4, 5};
+    model::SolutionSoFar left;
+    const auto whole = solve::solve_animation(
+        animation, exact, frames, {}, [](const auto&) {},
+        {.save = [&](const model::Solution& solution, const model::SolverState& state) {
+            if (solution.frames.size() == 3) left = {solution, state};
+        }});
+    for (const bool has_memory : {false, true}) {
+        NotingEngine engine(exact, has_memory);
+        const auto again =
+            solve::solve_animation(animation, engine, frames, {}, [](const auto&) {}, {.from = left});
+        ASSERT_EQ(again.frames.size(), 6u);
+        for (std::size_t f = 0; f < 6; ++f) EXPECT_EQ(again.frames[f].radiosity, whole.frames[f].radiosity);
+        EXPECT_EQ(engine.times.size(), has_memory ? 6u : 4u);
+        EXPECT_DOUBLE_EQ(engine.times.front(), has_memory ? 0.0 : 0.4);
     }
 }
 
