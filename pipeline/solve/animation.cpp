@@ -20,72 +20,80 @@ double square_sum(std::span<const double> values) {
     return sum;
 }
 
-/// Materials spread over the elements. Where all channels are proportional only the first is solved, and `scale` leads
-/// back to the others.
-struct Light {
+/// How the elements reflect. Where all channels are proportional only the first is solved, and `scale` leads back to the
+/// others.
+struct Surfaces {
     std::size_t channels = 0;        ///< solved
-    std::vector<double> exitance;    ///< M as coefficients, unknowns x channels [W/m2 or lm/m2]
     std::vector<double> reflectance; ///< elements x channels [1]
     std::vector<double> scale;       ///< per channel of the scene; empty: all are solved [1]
     std::vector<bool> emits;         ///< per element
 };
 
-Light light_of(const Animation& animation) {
+Surfaces surfaces_of(const Animation& animation) {
     const auto& materials = animation.scene.materials;
-    Light light;
-    light.channels = animation.plan.single_channel ? 1 : animation.scene.channels.size();
-    std::vector<double> exitance;
+    Surfaces surfaces;
+    surfaces.channels = animation.plan.single_channel ? 1 : animation.scene.channels.size();
     for (const model::Element& element : animation.elements) {
         const model::Material& material = materials[element.material.value];
-        exitance.insert(exitance.end(), material.exitance.begin(),
-                        material.exitance.begin() + static_cast<std::ptrdiff_t>(light.channels));
-        light.reflectance.insert(light.reflectance.end(), material.reflectance.begin(),
-                                 material.reflectance.begin() + static_cast<std::ptrdiff_t>(light.channels));
-        light.emits.push_back(material.emits());
-        if (animation.plan.single_channel && light.scale.empty() && material.exitance.front() > 0.0)
+        surfaces.reflectance.insert(surfaces.reflectance.end(), material.reflectance.begin(),
+                                    material.reflectance.begin() +
+                                        static_cast<std::ptrdiff_t>(surfaces.channels));
+        surfaces.emits.push_back(material.emits());
+        if (animation.plan.single_channel && surfaces.scale.empty() && material.exitance.front() > 0.0)
             for (const double value : material.exitance)
-                light.scale.push_back(value / material.exitance.front());
+                surfaces.scale.push_back(value / material.exitance.front());
     }
-    if (animation.plan.single_channel) light.scale.resize(animation.scene.channels.size(), 0.0);
-    light.exitance =
-        constant_coefficients(animation.coefficients.layout, light.channels, animation.areas, exitance);
-    return light;
+    if (animation.plan.single_channel) surfaces.scale.resize(animation.scene.channels.size(), 0.0);
+    return surfaces;
+}
+
+/// M of one frame as coefficients, unknowns x channels [W/m2 or lm/m2].
+std::vector<double> exitance_of(const Animation& animation, std::size_t channels) {
+    std::vector<double> exitance;
+    for (const model::Element& element : animation.elements) {
+        const std::vector<double>& values = animation.scene.materials[element.material.value].exitance;
+        exitance.insert(exitance.end(), values.begin(),
+                        values.begin() + static_cast<std::ptrdiff_t>(channels));
+    }
+    return constant_coefficients(animation.coefficients.layout, channels, animation.areas, exitance);
 }
 
 /// One bounce is left out, so is all that follows it: B = M + rho G M.
-FrameSolution direct_only(const TransportOperator& transport, const Light& light) {
+FrameSolution direct_only(const TransportOperator& transport, const Surfaces& surfaces,
+                          std::span<const double> exitance) {
     const auto& layout = transport.layout();
     FrameSolution frame;
-    frame.irradiance_direct.resize(light.exitance.size());
-    apply(transport, light.channels, light.exitance, frame.irradiance_direct);
-    frame.irradiance_indirect.assign(light.exitance.size(), 0.0);
-    frame.radiosity = light.exitance;
+    frame.irradiance_direct.resize(exitance.size());
+    apply(transport, surfaces.channels, exitance, frame.irradiance_direct);
+    frame.irradiance_indirect.assign(exitance.size(), 0.0);
+    frame.radiosity.assign(exitance.begin(), exitance.end());
     for (std::size_t e = 0; e < layout.elements(); ++e)
         for (std::size_t u = layout.offsets[e]; u < layout.offsets[e + 1]; ++u)
-            for (std::size_t c = 0; c < light.channels; ++c)
-                frame.radiosity[u * light.channels + c] += light.reflectance[e * light.channels + c] *
-                                                           frame.irradiance_direct[u * light.channels + c];
+            for (std::size_t c = 0; c < surfaces.channels; ++c)
+                frame.radiosity[u * surfaces.channels + c] +=
+                    surfaces.reflectance[e * surfaces.channels + c] *
+                    frame.irradiance_direct[u * surfaces.channels + c];
     frame.sweeps = 1;
     return frame;
 }
 
 /// Relative L2 error of radiosity over the elements that do not emit. An error of irradiance is reflected again and
 /// again: at most 1 / (1 - rho) times as much arrives in the end, rho being the mean reflectance.
-double radiosity_error(const model::UnknownLayout& layout, const Light& light, std::span<const double> areas,
-                       const FrameSolution& frame) {
+double radiosity_error(const model::UnknownLayout& layout, const Surfaces& surfaces,
+                       std::span<const double> areas, const FrameSolution& frame) {
     double error = 0.0, size = 0.0, reflected = 0.0, area = 0.0;
     for (std::size_t e = 0; e < layout.elements(); ++e) {
-        const auto rho = std::span(light.reflectance).subspan(e * light.channels, light.channels);
-        const double rho_square = square_sum(rho) / static_cast<double>(light.channels);
+        const auto rho = std::span(surfaces.reflectance).subspan(e * surfaces.channels, surfaces.channels);
+        const double rho_square = square_sum(rho) / static_cast<double>(surfaces.channels);
         reflected += std::sqrt(rho_square) * areas[e];
         area += areas[e];
-        if (light.emits[e]) continue;
+        if (surfaces.emits[e]) continue;
         const double irradiance_error = static_cast<double>(frame.element_error[e]);
         error += rho_square * irradiance_error * irradiance_error * areas[e];
-        size +=
-            square_sum(std::span(frame.radiosity)
-                           .subspan(layout.offsets[e] * light.channels, layout.count(e) * light.channels)) /
-            static_cast<double>(light.channels);
+        size += square_sum(std::span(frame.radiosity)
+                               .subspan(layout.offsets[e] * surfaces.channels,
+                                        layout.count(e) * surfaces.channels)) /
+                static_cast<double>(surfaces.channels);
     }
     if (!(size > 0.0)) return 0.0;
     return std::sqrt(error / size) / (1.0 - reflected / area);
@@ -100,11 +108,11 @@ std::vector<double> spread(std::span<const double> values, std::span<const doubl
 }
 
 /// One solved channel becomes all channels of the scene.
-void spread_channels(const Light& light, FrameSolution& frame) {
-    if (light.scale.empty()) return;
+void spread_channels(const Surfaces& surfaces, FrameSolution& frame) {
+    if (surfaces.scale.empty()) return;
     for (auto* values : {&frame.radiosity, &frame.irradiance_direct, &frame.irradiance_indirect})
-        *values = spread(*values, light.scale);
-    const double rms = std::sqrt(square_sum(light.scale) / static_cast<double>(light.scale.size()));
+        *values = spread(*values, surfaces.scale);
+    const double rms = std::sqrt(square_sum(surfaces.scale) / static_cast<double>(surfaces.scale.size()));
     for (float& error : frame.element_error) error = static_cast<float>(rms * static_cast<double>(error));
 }
 
@@ -227,8 +235,8 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
                                 const std::function<void(const FrameSolution&)>& progress) {
     const model::Coefficients& coefficients = animation.coefficients;
-    const Light light = light_of(animation);
-    TemporalSolver solver(light.channels, light.exitance, light.reflectance,
+    const Surfaces surfaces = surfaces_of(animation);
+    TemporalSolver solver(surfaces.channels, surfaces.reflectance,
                           {animation.areas.begin(), animation.areas.end()}, options);
     BlockOperator blocks(coefficients.layout, coefficients.static_blocks);
     const LinkedOperator linked(blocks, coefficients.hierarchy);
@@ -255,16 +263,17 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
             engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
         blocks.replace(changed.pairs, changed.blocks);
 
-        FrameSolution frame =
-            animation.plan.bounces == 0 ? direct_only(transport, light) : solver.solve_frame(transport);
+        const std::vector<double> exitance = exitance_of(animation, surfaces.channels);
+        FrameSolution frame = animation.plan.bounces == 0 ? direct_only(transport, surfaces, exitance)
+                                                          : solver.solve_frame(transport, exitance);
         frame.frame = number;
         frame.time_s = time_s;
         frame.blocks_recomputed = static_cast<std::uint32_t>(changed.computed);
         frame.element_error =
             irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
-                              animation.areas, light.exitance, frame, light.channels, coefficients.hierarchy);
-        frame.error_estimate = radiosity_error(coefficients.layout, light, animation.areas, frame);
-        spread_channels(light, frame);
+                              animation.areas, exitance, frame, surfaces.channels, coefficients.hierarchy);
+        frame.error_estimate = radiosity_error(coefficients.layout, surfaces, animation.areas, frame);
+        spread_channels(surfaces, frame);
         frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
         progress(frame);
         solution.frames.push_back(std::move(frame));

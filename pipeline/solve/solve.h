@@ -53,19 +53,22 @@ std::vector<double> constant_coefficients(const model::UnknownLayout& layout, st
 /// Solves frame after frame, each from the extrapolation of up to three frames before it (3 b1 - 3 b2 + b3).
 class TemporalSolver {
 public:
-    TemporalSolver(std::size_t channels, std::vector<double> exitance, std::vector<double> reflectance,
-                   std::vector<double> areas, const SolveOptions& options);
+    /// @param reflectance  rho, elements x channels [1]; @param areas  one per element [m2]
+    TemporalSolver(std::size_t channels, std::vector<double> reflectance, std::vector<double> areas,
+                   const SolveOptions& options);
 
+    /// @param exitance  M of this frame as coefficients, unknowns x channels [W/m2 or lm/m2]
     /// @return radiosity, direct and indirect irradiance, residual, unshot, sweeps; times and block counts are the
     ///         caller's to fill in
-    model::FrameSolution solve_frame(const TransportOperator& transport);
+    model::FrameSolution solve_frame(const TransportOperator& transport, std::span<const double> exitance);
 
 private:
     std::vector<double> extrapolated() const;
-    std::vector<double> emitted_irradiance(const TransportOperator& transport) const;
+    std::vector<double> emitted_irradiance(const TransportOperator& transport,
+                                           std::span<const double> exitance) const;
 
     std::size_t channels_;
-    std::vector<double> exitance_, reflectance_, areas_;
+    std::vector<double> reflectance_, areas_;
     SolveOptions options_;
     std::vector<std::vector<double>> previous_; ///< radiosity of the last frames, newest first
 };

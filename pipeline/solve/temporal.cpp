@@ -7,11 +7,9 @@
 
 namespace kinelux::solve {
 
-TemporalSolver::TemporalSolver(std::size_t channels, std::vector<double> exitance,
-                               std::vector<double> reflectance, std::vector<double> areas,
-                               const SolveOptions& options)
+TemporalSolver::TemporalSolver(std::size_t channels, std::vector<double> reflectance,
+                               std::vector<double> areas, const SolveOptions& options)
     : channels_(channels),
-      exitance_(std::move(exitance)),
       reflectance_(std::move(reflectance)),
       areas_(std::move(areas)),
       options_(options) {}
@@ -29,25 +27,26 @@ std::vector<double> TemporalSolver::extrapolated() const {
 }
 
 // G M, element by element that emits where that can be done: they are few.
-std::vector<double> TemporalSolver::emitted_irradiance(const TransportOperator& transport) const {
+std::vector<double> TemporalSolver::emitted_irradiance(const TransportOperator& transport,
+                                                       std::span<const double> exitance) const {
     const auto& layout = transport.layout();
-    std::vector<double> irradiance(exitance_.size());
+    std::vector<double> irradiance(exitance.size());
     const RowOperator* rows = transport.rows();
     if (rows == nullptr) {
-        transport.apply(channels_, exitance_, irradiance);
+        transport.apply(channels_, exitance, irradiance);
         return irradiance;
     }
     for (std::size_t i = 0; i < layout.elements(); ++i) {
-        const auto own =
-            std::span(exitance_).subspan(layout.offsets[i] * channels_, layout.count(i) * channels_);
+        const auto own = exitance.subspan(layout.offsets[i] * channels_, layout.count(i) * channels_);
         if (std::any_of(own.begin(), own.end(), [](double value) { return value != 0.0; }))
             rows->scatter(i, channels_, own, irradiance);
     }
     return irradiance;
 }
 
-model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transport) {
-    const System system{transport, channels_, exitance_, reflectance_, areas_};
+model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transport,
+                                                 std::span<const double> exitance) {
+    const System system{transport, channels_, exitance, reflectance_, areas_};
     SystemSolution solved = solve_system(system, options_, extrapolated());
 
     model::FrameSolution frame;
@@ -55,9 +54,9 @@ model::FrameSolution TemporalSolver::solve_frame(const TransportOperator& transp
     frame.residual = solved.residual;
     frame.unshot = solved.unshot;
     frame.converged = solved.converged;
-    frame.irradiance_direct = emitted_irradiance(transport);
+    frame.irradiance_direct = emitted_irradiance(transport, exitance);
     frame.irradiance_indirect = std::move(solved.irradiance);
-    for (std::size_t k = 0; k < exitance_.size(); ++k)
+    for (std::size_t k = 0; k < exitance.size(); ++k)
         frame.irradiance_indirect[k] -= frame.irradiance_direct[k];
     frame.radiosity = solved.radiosity;
 

@@ -156,9 +156,9 @@ TEST(BlockOperator, gives_the_same_bytes_on_one_thread_and_two) {
 
 TEST(TemporalSolver, follows_a_fading_source_and_starts_near_the_answer) {
     const KnownAnswer known;
-    TemporalSolver solver(3, known.exitance, known.reflectance, known.areas, {.tolerance = 1e-8});
-    const auto first = solver.solve_frame(known.blocks);
-    const auto second = solver.solve_frame(known.blocks);
+    TemporalSolver solver(3, known.reflectance, known.areas, {.tolerance = 1e-8});
+    const auto first = solver.solve_frame(known.blocks, known.exitance);
+    const auto second = solver.solve_frame(known.blocks, known.exitance);
     EXPECT_GT(first.sweeps, 2u);
     EXPECT_LE(second.sweeps, 1u);
     EXPECT_LT(known.relative_error(second.radiosity), 1e-7);
