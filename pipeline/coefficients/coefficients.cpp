@@ -49,10 +49,11 @@ std::vector<Ball> swept_balls(std::span<const ElementShape> elements, const mode
     for (const ObjectId object : plan.moving_objects) {
         const Ball rest = bounding_ball(elements, object);
         if (!std::isfinite(rest.radius)) continue;
-        const model::Motion& motion = scene.motions[scene.objects[object.value].motion->value];
+        const MotionId motion = *scene.objects[object.value].motion;
         std::optional<Ball> current;
         for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame) {
-            const Vec3 centre = geometry::pose_at(motion, scene.time.time_of_frame(frame)).point(rest.centre);
+            const Vec3 centre =
+                geometry::pose_at(scene, motion, scene.time.time_of_frame(frame)).point(rest.centre);
             if (current && glm::distance(current->centre, centre) < 0.5 * rest.radius) {
                 current->radius =
                     std::max(current->radius, glm::distance(current->centre, centre) + rest.radius);

@@ -47,11 +47,12 @@ Surfaces surfaces_of(const Animation& animation) {
     return surfaces;
 }
 
-/// M of one frame as coefficients, unknowns x channels [W/m2 or lm/m2].
-std::vector<double> exitance_of(const Animation& animation, std::size_t channels) {
+/// M at a time as coefficients, unknowns x channels [W/m2 or lm/m2].
+std::vector<double> exitance_at(const Animation& animation, std::size_t channels, double time_s) {
+    const auto exitances = model::exitances_at(animation.scene, time_s);
     std::vector<double> exitance;
     for (const model::Element& element : animation.elements) {
-        const std::vector<double>& values = animation.scene.materials[element.material.value].exitance;
+        const std::vector<double>& values = exitances[element.material.value];
         exitance.insert(exitance.end(), values.begin(),
                         values.begin() + static_cast<std::ptrdiff_t>(channels));
     }
@@ -245,12 +246,15 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
     model::Solution solution{.layout = coefficients.layout,
                              .channels = static_cast<std::uint32_t>(animation.scene.channels.size()),
                              .frames = {}};
+    std::vector<double> exitance; // of the frame before, then of this one
     for (const std::uint32_t number : frames) {
         const auto started = std::chrono::steady_clock::now();
         const double time_s = animation.scene.time.time_of_frame(number);
-        if (animation.plan.moving_objects.empty() && !solution.frames.empty()) {
-            // Nothing moves: the first frame is every frame.
-            FrameSolution same = solution.frames.front();
+        const bool same_blocks = animation.plan.moving_objects.empty() && !solution.frames.empty();
+        std::vector<double> now = exitance_at(animation, surfaces.channels, time_s);
+        if (same_blocks && now == exitance) {
+            // Neither blocks nor lamps have changed: the frame before is this one too.
+            FrameSolution same = solution.frames.back();
             same.frame = number;
             same.time_s = time_s;
             same.sweeps = 0;
@@ -259,11 +263,13 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
             solution.frames.push_back(std::move(same));
             continue;
         }
-        const motion::FrameBlocks changed =
-            engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
-        blocks.replace(changed.pairs, changed.blocks);
+        exitance = std::move(now);
+        motion::FrameBlocks changed;
+        if (!same_blocks) {
+            changed = engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
+            blocks.replace(changed.pairs, changed.blocks);
+        }
 
-        const std::vector<double> exitance = exitance_of(animation, surfaces.channels);
         FrameSolution frame = animation.plan.bounces == 0 ? direct_only(transport, surfaces, exitance)
                                                           : solver.solve_frame(transport, exitance);
         frame.frame = number;
