@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -12,10 +12,10 @@
 
 #include "coefficients/element_tree.h"
 #include "coefficients/links.h"
+#include "coefficients/obstacles.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
-#include "geometry/pose.h"
 
 namespace kinelux::coefficients {
 
@@ -32,41 +32,6 @@ std::vector<std::optional<MotionId>> carriers(const model::Scene& scene, const m
     return result;
 }
 
-Ball bounding_ball(std::span<const ElementShape> elements, ObjectId object) {
-    Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const ElementShape& element : elements)
-        if (element.object == object) {
-            low = glm::min(low, element.box_low);
-            high = glm::max(high, element.box_high);
-        }
-    return {0.5 * (low + high), 0.5 * glm::length(high - low)};
-}
-
-// Balls that cover each moving body at all frames; neighbouring positions share one.
-std::vector<Ball> swept_balls(std::span<const ElementShape> elements, const model::Scene& scene,
-                              const model::Plan& plan) {
-    std::vector<Ball> result;
-    for (const ObjectId object : plan.moving_objects) {
-        const Ball rest = bounding_ball(elements, object);
-        if (!std::isfinite(rest.radius)) continue;
-        const MotionId motion = *scene.objects[object.value].motion;
-        std::optional<Ball> current;
-        for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame) {
-            const Vec3 centre =
-                geometry::pose_at(scene, motion, scene.time.time_of_frame(frame)).point(rest.centre);
-            if (current && glm::distance(current->centre, centre) < 0.5 * rest.radius) {
-                current->radius =
-                    std::max(current->radius, glm::distance(current->centre, centre) + rest.radius);
-                continue;
-            }
-            if (current) result.push_back(*current);
-            current = Ball{centre, rest.radius};
-        }
-        result.push_back(*current);
-    }
-    return result;
-}
-
 struct Row {
     std::vector<model::BlockEntry> entries;
     std::vector<float> values;
@@ -80,7 +45,11 @@ public:
     RowBuilder(std::span<const ElementShape> elements, const model::Scene& scene, const model::Plan& plan,
                const visibility::Occluders& occluders, const kernel::TransportOptions& options)
         : elements_(elements), occluders_(occluders), options_(options), carriers_(carriers(scene, plan)) {
-        if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
+        if (!plan.moving_occlusion) return;
+        movers_ = swept_balls(elements, scene, plan);
+        for (const auto& carrier : carriers_)
+            if (carrier && !obstacles_.contains(*carrier))
+                obstacles_[*carrier] = obstacles_of_riders(elements, scene, *carrier);
     }
 
     bool at_rest(std::size_t i, std::size_t j) const {
@@ -103,7 +72,7 @@ public:
         Row row;
         for (const std::uint32_t j : partners(i)) {
             const ElementPair pair{static_cast<std::uint32_t>(i), j};
-            if (!at_rest(i, j)) {
+            if (!at_rest(i, j) || crossed_while_riding(pair)) {
                 row.moving.push_back(pair);
                 continue;
             }
@@ -131,6 +100,20 @@ private:
         return result;
     }
 
+    // Whether something else may come between two elements that ride on one motion.
+    bool crossed_while_riding(const ElementPair& pair) const {
+        const auto& carrier = carriers_[elements_[pair.i].object.value];
+        if (!carrier || obstacles_.empty()) return false;
+        const ElementShape& a = elements_[pair.i];
+        const ElementShape& b = elements_[pair.j];
+        const std::vector<Ball>& obstacles = obstacles_.at(*carrier);
+        return std::any_of(obstacles.begin(), obstacles.end(),
+                           [&](const Ball& obstacle) {
+                               return geometry::may_pass_between(a, b, obstacle.centre, obstacle.radius);
+                           }) &&
+               kernel::may_exchange(a, b);
+    }
+
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
@@ -153,6 +136,7 @@ private:
     kernel::TransportOptions options_;
     std::vector<std::optional<MotionId>> carriers_;
     std::vector<Ball> movers_;
+    std::map<MotionId, std::vector<Ball>> obstacles_; ///< of those that ride on each motion
     bool grouped_ = false;
     std::vector<ElementPair> near_;
     std::vector<std::uint32_t> riding_;

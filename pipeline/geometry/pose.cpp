@@ -34,11 +34,10 @@ Vec3 translation_between(const model::Motion& motion, std::size_t k, double s) {
     if (motion.interpolation == model::Interpolation::Step) return from.translation;
     if (motion.interpolation == model::Interpolation::Linear)
         return glm::mix(from.translation, to.translation, s);
-    return hermite(from.translation,
-                   from.tangents ? from.tangents->translation_out : chord_slope(motion.keyframes, k),
-                   to.translation,
-                   to.tangents ? to.tangents->translation_in : chord_slope(motion.keyframes, k + 1),
-                   to.time_s - from.time_s, s);
+    return hermite(
+        from.translation, from.tangents ? from.tangents->translation_out : chord_slope(motion.keyframes, k),
+        to.translation, to.tangents ? to.tangents->translation_in : chord_slope(motion.keyframes, k + 1),
+        to.time_s - from.time_s, s);
 }
 
 Quat rotation_between(const model::Motion& motion, std::size_t k, double s) {

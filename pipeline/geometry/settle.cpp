@@ -32,7 +32,8 @@ struct Probes {
                           [&](const Pose& x, const Pose& y) { return agree(x, y); });
     }
     bool rests(const Path& path) const {
-        return std::all_of(path.begin(), path.end(), [&](const Pose& pose) { return agree(pose, path.front()); });
+        return std::all_of(path.begin(), path.end(),
+                           [&](const Pose& pose) { return agree(pose, path.front()); });
     }
 };
 
@@ -43,7 +44,9 @@ Probes probes_of(const model::Scene& scene) {
             low = glm::min(low, point);
             high = glm::max(high, point);
         }
-    const double size = glm::distance(low, high);
+    if (!(low.x <= high.x)) low = high = Vec3(0.0); // no mesh yet
+    const double extent = glm::distance(low, high);
+    const double size = extent > 0.0 ? extent : 1.0;
     return {{low, low + Vec3(size, 0.0, 0.0), low + Vec3(0.0, size, 0.0), low + Vec3(0.0, 0.0, size)},
             same_place * size};
 }

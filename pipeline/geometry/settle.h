@@ -13,8 +13,8 @@ bool changes_pose(const model::Scene& scene, MotionId motion);
 
 /// What settling did to one object.
 enum class Settled : std::uint8_t {
-    AsItWas,   ///< without motion, or it keeps the one it had
-    AtRest,    ///< its motion never changes its pose in the frames: it was put there and has no motion any more
+    AsItWas, ///< without motion, or it keeps the one it had
+    AtRest,  ///< its motion never changes its pose in the frames: it was put there and has no motion any more
     WithOthers ///< it keeps its place relative to a body before it: both follow one motion now
 };
 

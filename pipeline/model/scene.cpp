@@ -63,7 +63,8 @@ void check_keyframe(const Keyframe& key, const Motion& motion, const std::string
     // Between the given keys of a spline of quaternions lie others that are not unit, which is how they are joined.
     const double length = glm::length(key.rotation);
     const bool spline = motion.rotation_interpolation == Interpolation::Cubic;
-    if (!(spline ? length > unit_tolerance && std::isfinite(length) : std::abs(length - 1.0) <= unit_tolerance))
+    if (!(spline ? length > unit_tolerance && std::isfinite(length)
+                 : std::abs(length - 1.0) <= unit_tolerance))
         refuse(where, "has a rotation that is not a unit quaternion");
     if (key.turn && !is_finite(*key.turn)) refuse(where, "has a turn that is not finite");
     if (key.tangents.has_value() != motion.keyframes.front().tangents.has_value())

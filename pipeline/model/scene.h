@@ -39,8 +39,9 @@ enum class Interpolation : std::uint8_t { Step, Linear, Cubic };
 
 /// Rates of change on either side of a keyframe, for splines through given slopes.
 struct KeyTangents {
-    Vec3 translation_in{0.0}, translation_out{0.0};                             ///< [m/s]
+    Vec3 translation_in{0.0}, translation_out{0.0};                         ///< [m/s]
     Quat rotation_in{0.0, 0.0, 0.0, 0.0}, rotation_out{0.0, 0.0, 0.0, 0.0}; ///< [1/s]
+    bool operator==(const KeyTangents&) const = default;
 };
 
 /// One stop of a motion; the pose of a body relative to its rest position.
@@ -48,17 +49,20 @@ struct Keyframe {
     double time_s = 0.0;
     Vec3 translation{0.0};             ///< [m]
     Quat rotation{1.0, 0.0, 0.0, 0.0}; ///< about the motion's pivot
-    std::optional<Vec3> turn = {}; ///< from the keyframe before: axis x angle [rad], which may be beyond a half turn;
-                                   ///< unset: the shortest way
+    std::optional<Vec3> turn =
+        {}; ///< from the keyframe before: axis x angle [rad], which may be beyond a half turn;
+            ///< unset: the shortest way
     std::optional<KeyTangents> tangents = {}; ///< on all keyframes of a motion or on none
+    bool operator==(const Keyframe&) const = default;
 };
 
 /// A rigid path in time. Before the first and after the last keyframe the body rests.
 struct Motion {
     std::string name;
-    Interpolation interpolation = Interpolation::Linear; ///< of translations; cubic: by tangents, else Catmull-Rom
-    Vec3 pivot{0.0};                                     ///< rotation centre in the rest position [m]
-    std::vector<Keyframe> keyframes;                     ///< at least one, times strictly increasing
+    Interpolation interpolation =
+        Interpolation::Linear;       ///< of translations; cubic: by tangents, else Catmull-Rom
+    Vec3 pivot{0.0};                 ///< rotation centre in the rest position [m]
+    std::vector<Keyframe> keyframes; ///< at least one, times strictly increasing
     Interpolation rotation_interpolation = Interpolation::Linear; ///< linear: slerp; cubic: by tangents
     std::optional<MotionId> parent = {}; ///< carries this motion: world = parent (own (rest)); no circles
 };
@@ -68,6 +72,7 @@ struct Dimming {
     struct Key {
         double time_s = 0.0;
         double factor = 1.0; ///< on the exitance [1], >= 0
+        bool operator==(const Key&) const = default;
     };
     std::string name;
     Interpolation interpolation = Interpolation::Linear; ///< step or linear

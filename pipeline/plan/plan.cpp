@@ -175,8 +175,9 @@ Effect dimming(const Scene& scene, bool moves) {
                                  greatest);
     }
     if (!names.empty())
-        return {"dimming", true, fmt::format("exitance changes over {} frames, blocks do not: {}",
-                                             scene.time.frames, names), 0.0, false};
+        return {"dimming", true,
+                fmt::format("exitance changes over {} frames, blocks do not: {}", scene.time.frames, names),
+                0.0, false};
     return {"dimming", false,
             moves ? "every lamp is steady"
                   : "every lamp is steady and no body moves: one solve serves all frames",
