@@ -176,7 +176,8 @@ Effect dimming(const Scene& scene, bool moves) {
     }
     if (!names.empty())
         return {"dimming", true,
-                fmt::format("exitance changes over {} frames, blocks do not: {}", scene.time.frames, names),
+                fmt::format("exitance changes over {} frames, which no block depends on: {}",
+                            scene.time.frames, names),
                 0.0, false};
     return {"dimming", false,
             moves ? "every lamp is steady"
