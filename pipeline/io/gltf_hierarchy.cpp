@@ -38,6 +38,13 @@ Mat4 local(const GltfNode& node) {
 
 Vec3 vector_of(const Quat& q) { return {q.x, q.y, q.z}; }
 
+// Those of a track that is a spline, else zero.
+std::pair<Quat, Quat> slopes_of(const GltfTrack* track, double time_s) {
+    if (track != nullptr && track->interpolation == model::Interpolation::Cubic)
+        return track->slopes_at(time_s);
+    return {Quat(0.0, 0.0, 0.0, 0.0), Quat(0.0, 0.0, 0.0, 0.0)};
+}
+
 } // namespace
 
 Quat GltfTrack::at(double time_s) const {
@@ -124,22 +131,15 @@ std::optional<model::Motion> GltfHierarchy::motion_of(int mover) const {
     for (const double time_s : times) {
         const Quat rotation = rotations == nullptr ? node.rotation : rotations->at(time_s);
         const Vec3 place = translations == nullptr ? node.translation : vector_of(translations->at(time_s));
-        model::Keyframe key{time_s, linear * (place - node.translation), turned(rotation)};
         const Mat3 own = glm::mat3_cast(glm::normalize(rotation * glm::conjugate(node.rotation)));
-        if (!near(linear * own * glm::inverse(linear), glm::mat3_cast(glm::normalize(key.rotation))))
-            return std::nullopt;
-        if (splines) key.tangents.emplace();
-        if (translations != nullptr && translations->interpolation == model::Interpolation::Cubic) {
-            const auto [before, after] = translations->slopes_at(time_s);
-            key.tangents->translation_in = linear * vector_of(before);
-            key.tangents->translation_out = linear * vector_of(after);
-        }
-        if (rotations != nullptr && rotations->interpolation == model::Interpolation::Cubic) {
-            const auto [before, after] = rotations->slopes_at(time_s);
-            key.tangents->rotation_in = turned(before);
-            key.tangents->rotation_out = turned(after);
-        }
-        motion.keyframes.push_back(std::move(key));
+        const Mat3 seen = glm::mat3_cast(glm::normalize(turned(rotation)));
+        if (!near(linear * own * glm::inverse(linear), seen)) return std::nullopt;
+        motion.keyframes.push_back({time_s, linear * (place - node.translation), turned(rotation)});
+        if (!splines) continue;
+        const auto [shift_in, shift_out] = slopes_of(translations, time_s);
+        const auto [turn_in, turn_out] = slopes_of(rotations, time_s);
+        motion.keyframes.back().tangents.emplace(model::KeyTangents{
+            linear * vector_of(shift_in), linear * vector_of(shift_out), turned(turn_in), turned(turn_out)});
     }
     return motion;
 }

@@ -78,7 +78,7 @@ void check_motion(const Motion& motion, const Scene& scene) {
     if (!is_finite(motion.pivot)) refuse(where, "its pivot is not finite");
     for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
         const std::string which = "keyframe " + std::to_string(k + 1);
-        check_keyframe(motion.keyframes[k], motion, where + ": " + which);
+        check_keyframe(motion.keyframes[k], motion, std::string(where).append(": ").append(which));
         if (k > 0 && !(motion.keyframes[k].time_s > motion.keyframes[k - 1].time_s))
             refuse(where, which + " is not later than the one before it; times must increase");
     }
