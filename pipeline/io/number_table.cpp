@@ -42,12 +42,12 @@ std::vector<double> numbers(const NumberTable& table, int line, const std::vecto
 } // namespace
 
 void NumberTable::fail(int line, const std::string& what) const {
-    throw core::FileError(fmt::format("{}:{}: {}", file.string(), line, what));
+    throw core::FileError(fmt::format("{}:{}: {}", name, line, what));
 }
 
 NumberTable read_number_table(const std::filesystem::path& file,
                               const std::vector<std::vector<std::string>>& headers) {
-    NumberTable table{file, {}};
+    NumberTable table{file.string(), {}};
     std::istringstream stream(read_bytes(file));
     std::size_t columns = 0;
     int line = 0;

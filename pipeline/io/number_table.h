@@ -15,10 +15,10 @@ struct NumberTable {
         int line = 0;
         std::vector<double> values;
     };
-    std::filesystem::path file;
+    std::string name;      ///< of the file, for messages
     std::vector<Row> rows; ///< at least one; the first column increases
 
-    [[noreturn]] void fail(int line, const std::string& what) const; ///< FileError "file:line: what"
+    [[noreturn]] void fail(int line, const std::string& what) const; ///< FileError "name:line: what"
 };
 
 /// @param headers  lists of column names, one of which the file must begin with

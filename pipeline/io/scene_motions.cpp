@@ -107,11 +107,14 @@ std::vector<model::Keyframe> SceneBuilder::keyframes_of(const SceneSection& sect
 NumberTable SceneBuilder::read_csv(const SceneSection& section,
                                    const std::vector<std::vector<std::string>>& headers) const {
     const std::filesystem::path file = path_of(*section.text("csv"));
+    const std::string where = document_.where(section.line_of("csv")) + ": ";
     try {
         tree_.require(file);
-        return read_number_table(file, headers);
+        NumberTable table = read_number_table(file, headers);
+        table.name.insert(0, where);
+        return table;
     } catch (const core::FileError& error) {
-        throw core::FileError(document_.where(section.line_of("csv")) + ": " + error.what());
+        throw core::FileError(where + error.what());
     }
 }
 
