@@ -94,24 +94,6 @@ TEST(SceneTest, check_refuses_each_broken_setting) {
         [](Scene& s) { s.motions[0].keyframes[1].time_s = 0.0; },
         [=](Scene& s) { s.motions[0].keyframes[1].translation.x = nan; },
         [](Scene& s) { s.motions[0].keyframes[1].rotation = Quat(2, 0, 0, 0); },
-        [](Scene& s) { s.motions[0].keyframes[1].turn = Vec3(0, 0, HUGE_VAL); },
-        [](Scene& s) { s.motions[0].keyframes[1].tangents.emplace(); },
-        [](Scene& s) { s.motions[0].rotation_interpolation = Interpolation::Cubic; },
-        [](Scene& s) { s.motions[0].parent = MotionId(1); },
-        [](Scene& s) { s.motions[0].parent = MotionId(0); },
-        [](Scene& s) { s.materials[0].dimming = DimmingId(0); },
-        [](Scene& s) {
-            s.dimmings = {{"d", Interpolation::Linear, {}}};
-        },
-        [](Scene& s) {
-            s.dimmings = {{"d", Interpolation::Cubic, {{0.0, 1.0}}}};
-        },
-        [](Scene& s) {
-            s.dimmings = {{"d", Interpolation::Linear, {{0.0, -1.0}}}};
-        },
-        [](Scene& s) {
-            s.dimmings = {{"d", Interpolation::Linear, {{0.0, 1.0}, {0.0, 2.0}}}};
-        },
         [](Scene& s) {
             s.time = {0.0, 0.0, 0};
         },
@@ -130,6 +112,34 @@ TEST(SceneTest, check_refuses_each_broken_setting) {
             s.meters.push_back({"none", {}, {1, 0, 0}, {0, 1, 0}, 0, 1});
         },
         [](Scene& s) { s.up = Vec3(0.0); },
+    };
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+        Scene scene = small_scene();
+        faults[i](scene);
+        EXPECT_THROW(check(scene), core::OptionError) << "fault " << i;
+    }
+}
+
+TEST(SceneTest, check_refuses_motions_and_dimmings_that_cannot_be) {
+    const std::vector<std::function<void(Scene&)>> faults = {
+        [](Scene& s) { s.motions[0].keyframes[1].turn = Vec3(0, 0, HUGE_VAL); },
+        [](Scene& s) { s.motions[0].keyframes[1].tangents.emplace(); },
+        [](Scene& s) { s.motions[0].rotation_interpolation = Interpolation::Cubic; },
+        [](Scene& s) { s.motions[0].parent = MotionId(1); },
+        [](Scene& s) { s.motions[0].parent = MotionId(0); },
+        [](Scene& s) { s.materials[0].dimming = DimmingId(0); },
+        [](Scene& s) {
+            s.dimmings = {{"d", Interpolation::Linear, {}}};
+        },
+        [](Scene& s) {
+            s.dimmings = {{"d", Interpolation::Cubic, {{0.0, 1.0}}}};
+        },
+        [](Scene& s) {
+            s.dimmings = {{"d", Interpolation::Linear, {{0.0, -1.0}}}};
+        },
+        [](Scene& s) {
+            s.dimmings = {{"d", Interpolation::Linear, {{0.0, 1.0}, {0.0, 2.0}}}};
+        },
     };
     for (std::size_t i = 0; i < faults.size(); ++i) {
         Scene scene = small_scene();
