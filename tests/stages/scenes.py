@@ -86,7 +86,7 @@ translation = [0.3, 0.0, 0.0]
 
 
 def write_room(folder, moving=False, target="10%", more="", block_motion=None, frames=None, quantity="radiometric",
-               lamp="", end_s=None):
+               lamp_more="", end_s=None):
     """A closed room of 2 m x 2 m x 2 m with a floating block and a lamp below its ceiling. @return  its scene file"""
     folder = pathlib.Path(folder)
     obj = Obj().group("room", *box_faces((0, 0, 0), (2, 2, 2), True))
@@ -96,7 +96,7 @@ def write_room(folder, moving=False, target="10%", more="", block_motion=None, f
     if block_motion is None:
         block_motion = 'motion = "glide"' if moving else ""
     end_s = end_s or (1.0 if moving else 0.0)
-    text = ROOM.format(target=target, end_s=end_s, frames=frames or (3 if moving else 1), lamp=lamp,
+    text = ROOM.format(target=target, end_s=end_s, frames=frames or (3 if moving else 1), lamp=lamp_more,
                        block_motion=block_motion, quantity=quantity, more=(MOTION if moving else "") + more)
     scene = folder / "room.toml"
     scene.write_text(text, encoding="utf-8")
