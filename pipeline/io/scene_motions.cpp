@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -255,12 +256,14 @@ void SceneBuilder::refuse_unused() const {
     for (const auto& [name, entry] : motions_)
         if (!entry.used)
             document_.fail(entry.section->line,
-                           "motion '" + name + "' moves no object; write motion = \"" + name +
-                               "\" in one of: " + short_list({object_names_.begin(), object_names_.end()}));
+                           fmt::format("motion '{0}' moves no object; write motion = \"{0}\" in one of: {1}",
+                                       name, short_list({object_names_.begin(), object_names_.end()})));
     for (const auto& [name, entry] : dimmings_)
         if (!entry.used)
-            document_.fail(entry.section->line, "dimming '" + name + "' dims no lamp; write dimming = \"" +
-                                                    name + "\" in an [[object]] or [[material]] that emits");
+            document_.fail(entry.section->line,
+                           fmt::format("dimming '{0}' dims no lamp; write dimming = \"{0}\" in "
+                                       "an [[object]] or [[material]] that emits",
+                                       name));
 }
 
 } // namespace kinelux::io
