@@ -58,6 +58,7 @@ NumberTable read_number_table(const std::filesystem::path& file,
         if (columns == 0) {
             if (std::find(headers.begin(), headers.end(), row) == headers.end()) {
                 std::vector<std::string> known;
+                known.reserve(headers.size());
                 for (const auto& header : headers) known.push_back(fmt::format("{}", fmt::join(header, ",")));
                 table.fail(line, fmt::format("expected the column names {}", fmt::join(known, " or ")));
             }

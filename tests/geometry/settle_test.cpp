@@ -55,7 +55,7 @@ std::vector<Vec3> places(const model::Scene& scene) {
 
 std::vector<Settled> settle_in_place(model::Scene& scene) {
     const std::vector<Vec3> before = places(scene);
-    const std::vector<Settled> settled = settle_motions(scene);
+    std::vector<Settled> settled = settle_motions(scene);
     const std::vector<Vec3> after = places(scene);
     for (std::size_t p = 0; p < before.size(); ++p) EXPECT_LT(glm::distance(before[p], after[p]), 1e-12);
     return settled;

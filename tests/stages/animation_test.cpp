@@ -107,6 +107,7 @@ TEST(Animation, dimmed_lamps_over_bodies_at_rest_scale_the_light_and_recompute_n
     const visibility::Occluders occluders(visibility::bodies_of(room.patches, room.scene));
     const auto blocks = coefficients::compute_coefficients(shapes, room.scene, room.plan, occluders, {}, 1e6);
     std::vector<double> areas;
+    areas.reserve(shapes.size());
     for (const auto& shape : shapes) areas.push_back(shape.area);
     for (const std::uint32_t bounces : {10u, 0u}) {
         room.plan.bounces = bounces;
