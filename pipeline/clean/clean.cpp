@@ -12,6 +12,7 @@
 #include "clean/parts.h"
 #include "clean/sides.h"
 #include "clean/work_mesh.h"
+#include "geometry/settle.h"
 
 namespace kinelux::clean {
 
@@ -79,6 +80,13 @@ void drop_unused_points(model::Mesh& mesh) {
     mesh.points = std::move(points);
 }
 
+void note_settling(geometry::Settled settled, CleanReport& report) {
+    if (settled == geometry::Settled::AtRest)
+        report.notes.emplace_back("its motion never changes its pose in the frames: it rests");
+    if (settled == geometry::Settled::WithOthers)
+        report.notes.emplace_back("keeps its place relative to a body before it: both are moved as one");
+}
+
 void finish(WorkMesh& work, CleanReport& report) {
     drop_unused_points(work.mesh);
     report.faces_out = work.mesh.triangles.size();
@@ -95,10 +103,12 @@ void finish(WorkMesh& work, CleanReport& report) {
 CleanResult clean_scene(model::Scene scene, const CleanOptions& options) {
     CleanResult result;
     result.reports.resize(scene.objects.size());
+    const std::vector<geometry::Settled> settled = geometry::settle_motions(scene);
     std::vector<WorkMesh> meshes;
     std::vector<std::vector<Part>> parts;
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         CleanReport& report = result.reports[o];
+        note_settling(settled[o], report);
         meshes.push_back(repair(scene.objects[o], options, report));
         count_intersections(meshes.back().mesh, report);
         parts.push_back(orient(meshes.back(), report));

@@ -47,7 +47,9 @@ struct CleanResult {
 ///   Sides::Both   both
 ///   Sides::Auto   open parts both; closed parts the outside, or the inside if they hold a lamp or other geometry or are
 ///                 all there is in the scene (a room)
-/// Faces back to back become one two-sided face. Materials, names, motions and the order of objects survive. Never
+/// Faces back to back become one two-sided face. Materials, names and the order of objects survive. Bodies whose motion
+/// never changes their pose come to rest there, and bodies that keep their distance follow one motion (settle_motions):
+/// every later stage relies on that. Never
 /// removes area in silence: reports carry area before and after.
 /// @throws GeometryError  an object has no face left, or a coordinate is not finite (names object and face)
 CleanResult clean_scene(model::Scene scene, const CleanOptions& options);

@@ -79,10 +79,9 @@ bool emits(const model::Scene& scene, const model::Object& object) {
 // The poses at which a body is looked at: where its path bends.
 std::vector<geometry::Pose> poses_of(const model::Scene& scene, const model::Object& object) {
     if (!object.motion) return {geometry::Pose{}};
-    const model::Motion& motion = scene.motions[object.motion->value];
     std::vector<geometry::Pose> poses;
-    for (const model::Keyframe& key : motion.keyframes)
-        poses.push_back(geometry::pose_at(motion, key.time_s));
+    for (const double time_s : geometry::key_times(scene, *object.motion))
+        poses.push_back(geometry::pose_at(scene, *object.motion, time_s));
     return poses;
 }
 

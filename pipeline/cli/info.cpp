@@ -87,6 +87,7 @@ std::string of_scene(const model::Scene& scene, const std::string& what) {
                                     short_number(scene.time.start_s), short_number(scene.time.end_s)));
     facts.add("materials", scene.materials.size());
     facts.add("motions", scene.motions.size());
+    facts.add("dimmings", scene.dimmings.size());
     facts.add("grid meters", scene.meters.size());
     facts.add("triangles", triangles);
     facts.add(bounds);

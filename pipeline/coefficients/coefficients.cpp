@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -13,11 +12,11 @@
 
 #include "coefficients/element_tree.h"
 #include "coefficients/links.h"
+#include "coefficients/obstacles.h"
 #include "coefficients/pair_screen.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
-#include "geometry/pose.h"
 #include "kernel/clear_pair.h"
 
 namespace kinelux::coefficients {
@@ -32,40 +31,6 @@ std::vector<std::optional<MotionId>> carriers(const model::Scene& scene, const m
     std::vector<std::optional<MotionId>> result(scene.objects.size());
     for (const ObjectId object : plan.moving_objects)
         result[object.value] = scene.objects[object.value].motion;
-    return result;
-}
-
-Ball bounding_ball(std::span<const ElementShape> elements, ObjectId object) {
-    Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const ElementShape& element : elements)
-        if (element.object == object) {
-            low = glm::min(low, element.box_low);
-            high = glm::max(high, element.box_high);
-        }
-    return {0.5 * (low + high), 0.5 * glm::length(high - low)};
-}
-
-// Balls that cover each moving body at all frames; neighbouring positions share one.
-std::vector<Ball> swept_balls(std::span<const ElementShape> elements, const model::Scene& scene,
-                              const model::Plan& plan) {
-    std::vector<Ball> result;
-    for (const ObjectId object : plan.moving_objects) {
-        const Ball rest = bounding_ball(elements, object);
-        if (!std::isfinite(rest.radius)) continue;
-        const model::Motion& motion = scene.motions[scene.objects[object.value].motion->value];
-        std::optional<Ball> current;
-        for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame) {
-            const Vec3 centre = geometry::pose_at(motion, scene.time.time_of_frame(frame)).point(rest.centre);
-            if (current && glm::distance(current->centre, centre) < 0.5 * rest.radius) {
-                current->radius =
-                    std::max(current->radius, glm::distance(current->centre, centre) + rest.radius);
-                continue;
-            }
-            if (current) result.push_back(*current);
-            current = Ball{centre, rest.radius};
-        }
-        result.push_back(*current);
-    }
     return result;
 }
 

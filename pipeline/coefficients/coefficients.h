@@ -38,11 +38,14 @@ struct GroupingOptions {
 };
 
 /// The blocks of all pairs at rest relative to each other, with the occlusion by bodies that never move; and the lists
-/// of pairs that change: bodies in relative motion, and pairs at rest that a moving body may come between (judged by
-/// the pair's bounding spheres and the mover's bounds over all frames). In large scenes links between groups take the
+/// of pairs that change: bodies in relative motion or riding together past something that may come between them, and
+/// pairs at rest that a moving body may come between (judged by the pair's bounding spheres and the mover's bounds over
+/// all frames). In large scenes links between groups take the
 /// place of the blocks of distant pairs at rest that no moving body can come between (docs/hierarchy.md). Rows are computed in parallel; the result does
 /// not depend on threads.
 /// @param rest_elements  at rest, in order of ElementId
+/// @param scene          settled, as clean leaves it (geometry::settle_motions): bodies on one motion, and no others,
+///                       keep their distance
 /// @throws ResourceError  the blocks would need more than memory_limit_mib
 model::Coefficients compute_coefficients(std::span<const geometry::ElementShape> rest_elements,
                                          const model::Scene& scene, const model::Plan& plan,

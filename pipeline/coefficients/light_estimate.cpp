@@ -18,14 +18,25 @@ double mean(const std::vector<double>& channels) {
     return std::accumulate(channels.begin(), channels.end(), 0.0) / static_cast<double>(channels.size());
 }
 
+// Of each material in the frames: what a lamp is worth that is dimmed now and then.
+std::vector<std::vector<double>> brightest_exitances(const model::Scene& scene) {
+    auto result = model::exitances_at(scene, scene.time.start_s);
+    for (std::uint32_t frame = 1; frame < scene.time.frames && !scene.dimmings.empty(); ++frame) {
+        const auto now = model::exitances_at(scene, scene.time.time_of_frame(frame));
+        for (std::size_t m = 0; m < result.size(); ++m) result[m] = std::max(result[m], now[m]);
+    }
+    return result;
+}
+
 } // namespace
 
 LightEstimate even_light(std::span<const geometry::ElementShape> elements, const model::Scene& scene) {
     LightEstimate light;
+    const auto brightest = brightest_exitances(scene);
     double area = 0.0, flux = 0.0, reflected = 0.0;
     for (const geometry::ElementShape& element : elements) {
         const model::Material& material = scene.materials[element.material.value];
-        light.exitance.push_back(mean(material.exitance));
+        light.exitance.push_back(mean(brightest[element.material.value]));
         light.reflectance.push_back(mean(material.reflectance));
         area += element.area;
         flux += element.area * light.exitance.back();

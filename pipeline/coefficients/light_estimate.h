@@ -17,7 +17,7 @@ struct LightEstimate {
     std::vector<double> irradiance;            ///< one per element, same unit
 };
 
-/// Light spread evenly, as in a closed scene: E = flux / (area (1 - mean reflectance)). Without light E = B = 1.
+/// Light of lamps at their brightest, spread evenly, as in a closed scene: E = flux / (area (1 - mean reflectance)). Without light E = B = 1.
 LightEstimate even_light(std::span<const geometry::ElementShape> elements, const model::Scene& scene);
 
 /// The same after a few bounces through links, which the pairs of near elements are missing from; nowhere below a tenth

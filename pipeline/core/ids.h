@@ -21,6 +21,7 @@ struct Id {
 using MaterialId = Id<struct MaterialTag>; ///< into model::Scene::materials
 using ObjectId = Id<struct ObjectTag>;     ///< into model::Scene::objects
 using MotionId = Id<struct MotionTag>;     ///< into model::Scene::motions
+using DimmingId = Id<struct DimmingTag>;   ///< into model::Scene::dimmings
 using PatchId = Id<struct PatchTag>;       ///< into model::PatchSet::patches
 using ClusterId = Id<struct ClusterTag>;   ///< into model::ClusterTree::clusters
 using ElementId = Id<struct ElementTag>;   ///< into model::ClusterTree::elements

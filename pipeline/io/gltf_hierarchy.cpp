@@ -12,29 +12,37 @@ namespace kinelux::io {
 
 namespace {
 
-// Linear pieces per interval where a path is not a straight or cubic one between the keys.
-constexpr int pieces_per_interval = 16;
-
 // Deviation of R^T R from 1 that single precision files show.
 constexpr double rigid_tolerance = 1e-4;
 
-bool is_rigid(const Mat3& m) {
-    const Mat3 deviation = glm::transpose(m) * m - Mat3(1.0);
+bool near(const Mat3& a, const Mat3& b) {
     for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r)
-            if (!(std::abs(deviation[c][r]) < rigid_tolerance)) return false;
-    return glm::determinant(m) > 0.0;
+            if (!(std::abs(a[c][r] - b[c][r]) < rigid_tolerance)) return false;
+    return true;
 }
 
-std::vector<double> subdivided(const std::set<double>& times) {
-    std::vector<double> result;
-    for (auto next = times.begin(); next != times.end();) {
-        const double start = *next++;
-        result.push_back(start);
-        for (int i = 1; next != times.end() && i < pieces_per_interval; ++i)
-            result.push_back(start + (*next - start) * i / pieces_per_interval);
-    }
-    return result;
+// The rotation in a matrix that turns, scales along its own axes and may mirror.
+Quat rotation_in(Mat3 m) {
+    if (glm::determinant(m) < 0.0) m = -m;
+    const Vec3 x = glm::normalize(m[0]);
+    const Vec3 y = glm::normalize(m[1] - glm::dot(m[1], x) * x);
+    return glm::normalize(glm::quat_cast(Mat3(x, y, glm::cross(x, y))));
+}
+
+Mat4 local(const GltfNode& node) {
+    if (node.matrix) return *node.matrix;
+    return glm::translate(Mat4(1.0), node.translation) * glm::mat4_cast(node.rotation) *
+           glm::scale(Mat4(1.0), node.scale);
+}
+
+Vec3 vector_of(const Quat& q) { return {q.x, q.y, q.z}; }
+
+// Those of a track that is a spline, else zero.
+std::pair<Quat, Quat> slopes_of(const GltfTrack* track, double time_s) {
+    if (track != nullptr && track->interpolation == model::Interpolation::Cubic)
+        return track->slopes_at(time_s);
+    return {Quat(0.0, 0.0, 0.0, 0.0), Quat(0.0, 0.0, 0.0, 0.0)};
 }
 
 } // namespace
@@ -49,40 +57,42 @@ Quat GltfTrack::at(double time_s) const {
     if (interpolation == model::Interpolation::Cubic) {
         // Hermite spline of the glTF 2.0 specification, appendix C.
         const double s2 = s * s, s3 = s2 * s;
-        const Quat value = values[k] * (2.0 * s3 - 3.0 * s2 + 1.0) +
-                           out_tangents[k] * (length * (s3 - 2.0 * s2 + s)) +
-                           values[k + 1] * (3.0 * s2 - 2.0 * s3) + in_tangents[k + 1] * (length * (s3 - s2));
-        return is_rotation ? glm::normalize(value) : value;
+        return values[k] * (2.0 * s3 - 3.0 * s2 + 1.0) + out_tangents[k] * (length * (s3 - 2.0 * s2 + s)) +
+               values[k + 1] * (3.0 * s2 - 2.0 * s3) + in_tangents[k + 1] * (length * (s3 - s2));
     }
     return is_rotation ? glm::slerp(values[k], values[k + 1], s) : values[k] * (1.0 - s) + values[k + 1] * s;
 }
 
-Mat4 GltfHierarchy::local_at(int node, std::optional<double> time_s) const {
-    const GltfNode& self = nodes[static_cast<std::size_t>(node)];
-    if (self.matrix) return *self.matrix;
-    Vec3 translation = self.translation;
-    Quat rotation = self.rotation;
-    for (const GltfTrack& track : tracks) {
-        if (!time_s || track.node != node) continue;
-        const Quat value = track.at(*time_s);
-        if (track.is_rotation)
-            rotation = value;
-        else
-            translation = {value.x, value.y, value.z};
-    }
-    return glm::translate(Mat4(1.0), translation) * glm::mat4_cast(rotation) *
-           glm::scale(Mat4(1.0), self.scale);
+std::pair<Quat, Quat> GltfTrack::slopes_at(double time_s) const {
+    const Quat zero(0.0, 0.0, 0.0, 0.0);
+    const auto next = std::lower_bound(times_s.begin(), times_s.end(), time_s);
+    if (next == times_s.end()) return {zero, zero};
+    const auto k = static_cast<std::size_t>(next - times_s.begin());
+    if (*next == time_s)
+        return {k > 0 ? in_tangents[k] : zero, k + 1 < times_s.size() ? out_tangents[k] : zero};
+    if (k == 0) return {zero, zero};
+    const double length = times_s[k] - times_s[k - 1];
+    const double s = (time_s - times_s[k - 1]) / length;
+    const Quat slope = (values[k] - values[k - 1]) * (6.0 * s * (1.0 - s) / length) +
+                       out_tangents[k - 1] * (1.0 - 4.0 * s + 3.0 * s * s) +
+                       in_tangents[k] * (3.0 * s * s - 2.0 * s);
+    return {slope, slope};
 }
 
-Mat4 GltfHierarchy::world_at(int node, std::optional<double> time_s) const {
-    Mat4 world = local_at(node, time_s);
+Mat4 GltfHierarchy::rest_world_from_node(int node) const {
+    Mat4 world = local(nodes[static_cast<std::size_t>(node)]);
     for (int parent = nodes[static_cast<std::size_t>(node)].parent; parent >= 0;
          parent = nodes[static_cast<std::size_t>(parent)].parent)
-        world = local_at(parent, time_s) * world;
+        world = local(nodes[static_cast<std::size_t>(parent)]) * world;
     return world;
 }
 
-Mat4 GltfHierarchy::rest_world_from_node(int node) const { return world_at(node, std::nullopt); }
+const GltfTrack* GltfHierarchy::track_of(int node, bool is_rotation) const {
+    const auto found = std::find_if(tracks.begin(), tracks.end(), [&](const GltfTrack& track) {
+        return track.node == node && track.is_rotation == is_rotation;
+    });
+    return found == tracks.end() ? nullptr : &*found;
+}
 
 int GltfHierarchy::mover_of(int node) const {
     for (; node >= 0; node = nodes[static_cast<std::size_t>(node)].parent)
@@ -91,40 +101,45 @@ int GltfHierarchy::mover_of(int node) const {
     return -1;
 }
 
-std::optional<model::Motion> GltfHierarchy::motion_of(int mover, std::vector<std::string>& notes) const {
-    model::Motion motion;
-    motion.name = nodes[static_cast<std::size_t>(mover)].name;
-    std::set<double> key_times;
-    std::set<model::Interpolation> kinds;
-    std::size_t moving_nodes = 0;
-    for (int node = mover; node >= 0; node = nodes[static_cast<std::size_t>(node)].parent) {
-        bool moves = false;
-        for (const GltfTrack& track : tracks) {
-            if (track.node != node) continue;
-            moves = true;
-            key_times.insert(track.times_s.begin(), track.times_s.end());
-            kinds.insert(track.interpolation);
-        }
-        moving_nodes += moves ? 1 : 0;
-    }
-    const bool in_pieces =
-        kinds.size() > 1 || (moving_nodes > 1 && *kinds.begin() != model::Interpolation::Step);
-    motion.interpolation = in_pieces ? model::Interpolation::Linear : *kinds.begin();
-    if (!in_pieces && motion.interpolation == model::Interpolation::Cubic)
-        notes.push_back("animation of node '" + motion.name +
-                        "': the tangents of its cubic splines are replaced by those of a Catmull-Rom spline");
+// A node's transform is P(t) T(t) R(t) S, with P its parents'. While they rest, what lies below it at rest is moved by
+//     P T(t) R(t) R0^-1 T0^-1 P^-1,
+// a turn by Q R(t) R0^-1 Q^-1 about P T0 and a shift by P's linear part times T(t) - T0, where Q is the rotation in P.
+// That is linear in the values of the tracks, so splines stay the splines they are.
+std::optional<model::Motion> GltfHierarchy::motion_of(int mover) const {
+    const GltfNode& node = nodes[static_cast<std::size_t>(mover)];
+    const Mat4 parents = node.parent >= 0 ? rest_world_from_node(node.parent) : Mat4(1.0);
+    const Mat3 linear(parents);
+    if (std::abs(glm::determinant(linear)) == 0.0) return std::nullopt;
+    const Quat turn = rotation_in(linear);
+    const auto turned = [&](const Quat& value) {
+        return turn * (value * glm::conjugate(node.rotation)) * glm::conjugate(turn);
+    };
+    const GltfTrack* translations = track_of(mover, false);
+    const GltfTrack* rotations = track_of(mover, true);
 
-    const Mat4 rest = rest_world_from_node(mover);
-    if (std::abs(glm::determinant(Mat3(rest))) == 0.0) return std::nullopt;
-    const Mat4 node_from_world = glm::inverse(rest);
-    motion.pivot = Vec3(rest[3]);
-    for (const double time :
-         in_pieces ? subdivided(key_times) : std::vector<double>(key_times.begin(), key_times.end())) {
-        const Mat4 world_from_rest = world_at(mover, time) * node_from_world;
-        const Mat3 rotation(world_from_rest);
-        if (!is_rigid(rotation)) return std::nullopt;
-        const Vec3 moved(world_from_rest * glm::dvec4(motion.pivot, 1.0));
-        motion.keyframes.push_back({time, moved - motion.pivot, glm::normalize(glm::quat_cast(rotation))});
+    model::Motion motion;
+    motion.name = node.name;
+    motion.pivot = Vec3(parents * glm::dvec4(node.translation, 1.0));
+    std::set<double> times;
+    bool splines = false;
+    for (const GltfTrack* track : {translations, rotations}) {
+        if (track == nullptr) continue;
+        times.insert(track->times_s.begin(), track->times_s.end());
+        splines = splines || track->interpolation == model::Interpolation::Cubic;
+        (track->is_rotation ? motion.rotation_interpolation : motion.interpolation) = track->interpolation;
+    }
+    for (const double time_s : times) {
+        const Quat rotation = rotations == nullptr ? node.rotation : rotations->at(time_s);
+        const Vec3 place = translations == nullptr ? node.translation : vector_of(translations->at(time_s));
+        const Mat3 own = glm::mat3_cast(glm::normalize(rotation * glm::conjugate(node.rotation)));
+        const Mat3 seen = glm::mat3_cast(glm::normalize(turned(rotation)));
+        if (!near(linear * own * glm::inverse(linear), seen)) return std::nullopt;
+        motion.keyframes.push_back({time_s, linear * (place - node.translation), turned(rotation)});
+        if (!splines) continue;
+        const auto [shift_in, shift_out] = slopes_of(translations, time_s);
+        const auto [turn_in, turn_out] = slopes_of(rotations, time_s);
+        motion.keyframes.back().tangents.emplace(model::KeyTangents{
+            linear * vector_of(shift_in), linear * vector_of(shift_out), turned(turn_in), turned(turn_out)});
     }
     return motion;
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/vec.h"
@@ -29,7 +30,9 @@ struct GltfTrack {
     std::vector<Quat> values;                    ///< one per key; a translation is kept in (x, y, z)
     std::vector<Quat> in_tangents, out_tangents; ///< one per key where the interpolation is cubic, else empty
 
-    Quat at(double time_s) const; ///< clamped to the first and last key
+    Quat at(double time_s) const; ///< clamped to the first and last key; of a cubic rotation not yet unit
+    /// Rates of change just before and after a time of a cubic track [1/s]; zero outside its keys.
+    std::pair<Quat, Quat> slopes_at(double time_s) const;
 };
 
 struct GltfHierarchy {
@@ -40,15 +43,13 @@ struct GltfHierarchy {
     Mat4 rest_world_from_node(int node) const;
     /// The node itself or its nearest ancestor that has a track; -1: none, the node rests.
     int mover_of(int node) const;
-    /// The path of everything below an animated node: world_from_rest at the union of all key times of it and its
-    /// ancestors. Where several nodes of that chain move or are interpolated in different ways, the path between the
-    /// keys is followed by further linear pieces.
-    /// @return  unset where the path is not a rigid motion (scaled parents)
-    std::optional<model::Motion> motion_of(int mover, std::vector<std::string>& notes) const;
+    /// The path of an animated node by itself, as it moves everything below it while its ancestors rest. Its keys are
+    /// those of all its tracks, and between them it is what the tracks say.
+    /// @return  without parent; unset where the path is not a rigid motion (scaled parents)
+    std::optional<model::Motion> motion_of(int mover) const;
 
 private:
-    Mat4 local_at(int node, std::optional<double> time_s) const;
-    Mat4 world_at(int node, std::optional<double> time_s) const;
+    const GltfTrack* track_of(int node, bool is_rotation) const;
 };
 
 } // namespace kinelux::io

@@ -311,8 +311,9 @@ private:
         };
         for (Index k = 0; k < keys; ++k) {
             const Index entry = cubic ? 3 * k + 1 : k;
-            track.values.push_back(track.is_rotation ? unit_quaternion(values.data() + entry * width)
-                                                     : raw(entry));
+            // A spline is made unit after it has been evaluated, not at its keys.
+            const Quat unit = track.is_rotation ? unit_quaternion(values.data() + entry * width) : raw(entry);
+            track.values.push_back(cubic ? raw(entry) : unit);
             if (!cubic) continue;
             track.in_tangents.push_back(raw(entry - 1));
             track.out_tangents.push_back(raw(entry + 1));
@@ -360,18 +361,22 @@ private:
         result_.groups.push_back(std::move(names));
     }
 
+    // The motion of the nearest animated node above, which is carried by those above that.
     std::optional<MotionId> motion_of(int node) {
         const int mover = hierarchy_.mover_of(node);
         if (mover < 0) return std::nullopt;
         const auto known = motions_.find(mover);
         if (known != motions_.end()) return known->second;
-        std::optional<model::Motion> motion = hierarchy_.motion_of(mover, result_.notes);
+        const GltfNode& own = hierarchy_.nodes[static_cast<Index>(mover)];
+        const auto parent = own.parent >= 0 ? motion_of(own.parent) : std::nullopt;
+        std::optional<model::Motion> motion = hierarchy_.motion_of(mover);
         if (!motion) {
-            result_.notes.push_back("animation of node '" + hierarchy_.nodes[static_cast<Index>(mover)].name +
+            result_.notes.push_back("animation of node '" + own.name +
                                     "' is refused: with its scaled parents it is not a rigid motion");
-            return motions_[mover] = std::nullopt;
+            return motions_[mover] = parent;
         }
         motion->name = unique_name(motion->name, motion_names_);
+        motion->parent = parent;
         result_.motions.push_back(std::move(*motion));
         return motions_[mover] = MotionId(result_.motions.size() - 1);
     }

@@ -30,9 +30,9 @@ double metres_per(const std::string& unit) {
 void warn_where_dark_or_still(const model::Scene& scene) {
     if (std::none_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.emits(); }))
         core::log_warning(scene.source.string() + ": no material emits light; everything will be black");
-    if (!scene.motions.empty() && scene.time.frames == 1)
+    if ((!scene.motions.empty() || !scene.dimmings.empty()) && scene.time.frames == 1)
         core::log_warning(scene.source.string() +
-                          ": something moves, but there is only one frame; set [time] frames");
+                          ": something changes with time, but there is only one frame; set [time] frames");
 }
 
 void add_time(const SceneDocument& document, model::Scene& scene) {
@@ -71,24 +71,6 @@ void add_settings(const SceneDocument& document, double metres, model::Scene& sc
     }
 }
 
-void add_meters(const SceneDocument& document, double metres, model::Scene& scene) {
-    std::set<std::string> names;
-    for (const SceneSection* section : document.all("meter")) {
-        model::GridMeter meter;
-        meter.name = *section->text("name");
-        if (!names.insert(meter.name).second)
-            document.fail(section->line_of("name"), "there are two meters '" + meter.name + "'");
-        meter.origin = metres * *section->vec3("origin");
-        meter.edge_u = metres * *section->vec3("edge_u");
-        meter.edge_v = metres * *section->vec3("edge_v");
-        meter.count_u = static_cast<std::uint32_t>(section->number("count_u").value_or(1.0));
-        meter.count_v = static_cast<std::uint32_t>(section->number("count_v").value_or(1.0));
-        if (!(glm::length(glm::cross(meter.edge_u, meter.edge_v)) > 0.0))
-            document.fail(section->line_of("edge_v"), "edge_u and edge_v must span a rectangle");
-        scene.meters.push_back(std::move(meter));
-    }
-}
-
 void add_view(const SceneDocument& document, double metres, model::Scene& scene) {
     const SceneSection& section = document.one("view");
     if (const auto eye = section.vec3("eye")) scene.view.eye = metres * *eye;
@@ -119,11 +101,14 @@ model::Scene read_scene_file(const std::filesystem::path& file, Outside outside)
     scene.up = section.has("up_axis") ? axis_vector(*section.text("up_axis")) : stated_up.value_or(scene.up);
     add_time(document, scene);
     add_settings(document, metres, scene);
-    add_meters(document, metres, scene);
     add_view(document, metres, scene);
+    builder.add_dimmings();
     builder.add_materials();
     builder.add_motions();
     builder.add_objects();
+    builder.add_meters();
+    builder.add_parents();
+    builder.refuse_unused();
     return scene;
 }
 

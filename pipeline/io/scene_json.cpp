@@ -44,6 +44,15 @@ std::optional<Vec3> optional_vec3_from(const Json& json) {
     return json.is_null() ? std::nullopt : std::optional(vec3_from(json));
 }
 
+template <class Id>
+Json id_to_json(const std::optional<Id>& id) {
+    return id ? Json(id->value) : Json(nullptr);
+}
+template <class Id>
+std::optional<Id> id_from(const Json& json) {
+    return json.is_null() ? std::nullopt : std::optional(Id(json.get<std::uint32_t>()));
+}
+
 /// The words of an enumeration, in the order of its values.
 template <class Enum, std::size_t count>
 Enum enum_from(const Json& json, const std::array<const char*, count>& words) {
@@ -106,20 +115,22 @@ Json to_json(const model::Material& material) {
     return {{"name", material.name},
             {"reflectance", material.reflectance},
             {"exitance", material.exitance},
-            {"sides", enum_to_json(material.sides, sides_words)}};
+            {"sides", enum_to_json(material.sides, sides_words)},
+            {"dimming", id_to_json(material.dimming)}};
 }
 
 model::Material material_from(const Json& json) {
     return {.name = json.at("name"),
             .reflectance = json.at("reflectance").get<std::vector<double>>(),
             .exitance = json.at("exitance").get<std::vector<double>>(),
-            .sides = enum_from<model::Sides>(json.at("sides"), sides_words)};
+            .sides = enum_from<model::Sides>(json.at("sides"), sides_words),
+            .dimming = id_from<DimmingId>(json.at("dimming"))};
 }
 
 Json to_json(const model::Object& object, const MeshFile& mesh) {
     return {{"name", object.name},
             {"source", object.source},
-            {"motion", object.motion ? Json(object.motion->value) : Json(nullptr)},
+            {"motion", id_to_json(object.motion)},
             {"mesh", {{"file", mesh.path}, {"hash", mesh.hash}}}};
 }
 
@@ -127,26 +138,48 @@ model::Object object_from(const Json& json) {
     model::Object object;
     object.name = json.at("name");
     object.source = json.at("source");
-    if (const auto motion = optional_from<std::uint32_t>(json.at("motion")))
-        object.motion = MotionId(*motion);
+    object.motion = id_from<MotionId>(json.at("motion"));
     return object;
 }
 
+Json to_json(const model::KeyTangents& tangents) {
+    return {{"translation_in_m_s", to_json(tangents.translation_in)},
+            {"translation_out_m_s", to_json(tangents.translation_out)},
+            {"rotation_in_wxyz", to_json(tangents.rotation_in)},
+            {"rotation_out_wxyz", to_json(tangents.rotation_out)}};
+}
+
+model::KeyTangents tangents_from(const Json& json) {
+    return {.translation_in = vec3_from(json.at("translation_in_m_s")),
+            .translation_out = vec3_from(json.at("translation_out_m_s")),
+            .rotation_in = quat_from(json.at("rotation_in_wxyz")),
+            .rotation_out = quat_from(json.at("rotation_out_wxyz"))};
+}
+
+/// Turn and tangents are written where there are some.
 Json to_json(const model::Keyframe& keyframe) {
-    return {{"time_s", keyframe.time_s},
-            {"translation_m", to_json(keyframe.translation)},
-            {"rotation_wxyz", to_json(keyframe.rotation)}};
+    Json json{{"time_s", keyframe.time_s},
+              {"translation_m", to_json(keyframe.translation)},
+              {"rotation_wxyz", to_json(keyframe.rotation)}};
+    if (keyframe.turn) json["turn_rad"] = to_json(*keyframe.turn);
+    if (keyframe.tangents) json["tangents"] = to_json(*keyframe.tangents);
+    return json;
 }
 
 model::Keyframe keyframe_from(const Json& json) {
-    return {.time_s = json.at("time_s"),
-            .translation = vec3_from(json.at("translation_m")),
-            .rotation = quat_from(json.at("rotation_wxyz"))};
+    model::Keyframe keyframe{.time_s = json.at("time_s"),
+                             .translation = vec3_from(json.at("translation_m")),
+                             .rotation = quat_from(json.at("rotation_wxyz"))};
+    if (json.contains("turn_rad")) keyframe.turn = vec3_from(json.at("turn_rad"));
+    if (json.contains("tangents")) keyframe.tangents = tangents_from(json.at("tangents"));
+    return keyframe;
 }
 
 Json to_json(const model::Motion& motion) {
     return {{"name", motion.name},
+            {"parent", id_to_json(motion.parent)},
             {"interpolation", enum_to_json(motion.interpolation, interpolation_words)},
+            {"rotation_interpolation", enum_to_json(motion.rotation_interpolation, interpolation_words)},
             {"pivot_m", to_json(motion.pivot)},
             {"keyframes", list_to_json(motion.keyframes, [](const auto& key) { return to_json(key); })}};
 }
@@ -155,7 +188,26 @@ model::Motion motion_from(const Json& json) {
     return {.name = json.at("name"),
             .interpolation = enum_from<model::Interpolation>(json.at("interpolation"), interpolation_words),
             .pivot = vec3_from(json.at("pivot_m")),
-            .keyframes = list_from(json.at("keyframes"), keyframe_from)};
+            .keyframes = list_from(json.at("keyframes"), keyframe_from),
+            .rotation_interpolation =
+                enum_from<model::Interpolation>(json.at("rotation_interpolation"), interpolation_words),
+            .parent = id_from<MotionId>(json.at("parent"))};
+}
+
+Json to_json(const model::Dimming& dimming) {
+    return {{"name", dimming.name},
+            {"interpolation", enum_to_json(dimming.interpolation, interpolation_words)},
+            {"keys", list_to_json(dimming.keys, [](const model::Dimming::Key& key) {
+                 return Json{{"time_s", key.time_s}, {"factor", key.factor}};
+             })}};
+}
+
+model::Dimming dimming_from(const Json& json) {
+    return {.name = json.at("name"),
+            .interpolation = enum_from<model::Interpolation>(json.at("interpolation"), interpolation_words),
+            .keys = list_from(json.at("keys"), [](const Json& key) {
+                return model::Dimming::Key{.time_s = key.at("time_s"), .factor = key.at("factor")};
+            })};
 }
 
 Json to_json(const model::GridMeter& meter) {
@@ -164,7 +216,8 @@ Json to_json(const model::GridMeter& meter) {
             {"edge_u_m", to_json(meter.edge_u)},
             {"edge_v_m", to_json(meter.edge_v)},
             {"count_u", meter.count_u},
-            {"count_v", meter.count_v}};
+            {"count_v", meter.count_v},
+            {"motion", id_to_json(meter.motion)}};
 }
 
 model::GridMeter meter_from(const Json& json) {
@@ -173,7 +226,8 @@ model::GridMeter meter_from(const Json& json) {
             .edge_u = vec3_from(json.at("edge_u_m")),
             .edge_v = vec3_from(json.at("edge_v_m")),
             .count_u = json.at("count_u"),
-            .count_v = json.at("count_v")};
+            .count_v = json.at("count_v"),
+            .motion = id_from<MotionId>(json.at("motion"))};
 }
 
 /// Everything that is one value and not a list.
@@ -261,6 +315,7 @@ std::string scene_to_json(const FileHeader& header, const model::Scene& scene,
     for (std::size_t o = 0; o < scene.objects.size(); ++o)
         json["objects"].push_back(to_json(scene.objects[o], meshes.at(o)));
     json["motions"] = list_to_json(scene.motions, [](const auto& motion) { return to_json(motion); });
+    json["dimmings"] = list_to_json(scene.dimmings, [](const auto& dimming) { return to_json(dimming); });
     json["meters"] = list_to_json(scene.meters, [](const auto& meter) { return to_json(meter); });
     return dump(json);
 }
@@ -272,6 +327,7 @@ SceneFile scene_from_json(std::string_view text) {
         file.scene.materials = list_from(json.at("materials"), material_from);
         file.scene.objects = list_from(json.at("objects"), object_from);
         file.scene.motions = list_from(json.at("motions"), motion_from);
+        file.scene.dimmings = list_from(json.at("dimmings"), dimming_from);
         file.scene.meters = list_from(json.at("meters"), meter_from);
         file.meshes = list_from(json.at("objects"), [](const Json& object) {
             return MeshFile{object.at("mesh").at("file"), object.at("mesh").at("hash")};

@@ -83,9 +83,18 @@ Mat3 turn_between(const Vec3& from, const Vec3& to) {
 model::Motion placed(const model::Motion& motion, const Placement& placement) {
     model::Motion result = motion;
     result.pivot = placement.point(motion.pivot);
+    const auto turned = [&](const Quat& value) {
+        return placement.rotation * value * glm::conjugate(placement.rotation);
+    };
     for (model::Keyframe& key : result.keyframes) {
         key.translation = placement.linear * key.translation;
-        key.rotation = glm::normalize(placement.rotation * key.rotation * glm::conjugate(placement.rotation));
+        key.rotation = turned(key.rotation);
+        if (key.turn) key.turn = placement.rotation * *key.turn;
+        if (!key.tangents) continue;
+        for (Vec3* tangent : {&key.tangents->translation_in, &key.tangents->translation_out})
+            *tangent = placement.linear * *tangent;
+        for (Quat* tangent : {&key.tangents->rotation_in, &key.tangents->rotation_out})
+            *tangent = turned(*tangent);
     }
     return result;
 }
@@ -175,33 +184,27 @@ void SceneBuilder::add_materials() {
         material.reflectance = per_channel(*section, "reflectance");
         material.exitance = per_channel(*section, "exitance");
         material.sides = sides_of(*section).value_or(model::Sides::Auto);
+        if (section->has("dimming")) material.dimming = dimming_of(*section);
         materials_[material.name] = MaterialId(scene_.materials.size());
         scene_.materials.push_back(std::move(material));
     }
 }
 
-Quat SceneBuilder::rotation_of(const SceneSection& section) const {
+AxisTurn SceneBuilder::turn_of(const SceneSection& section) const {
     const double degrees = section.number("rotation_deg").value_or(0.0);
     const auto axis = section.vec3("rotation_axis");
     if (degrees != 0.0 && !axis)
         document_.fail(section.line_of("rotation_deg"), "'rotation_deg' needs 'rotation_axis'");
     if (axis && !(glm::length(*axis) > 0.0))
         document_.fail(section.line_of("rotation_axis"), "'rotation_axis' has no direction");
-    if (degrees == 0.0) return {1.0, 0.0, 0.0, 0.0};
-    return glm::angleAxis(glm::radians(degrees), glm::normalize(*axis));
+    if (degrees == 0.0) return {};
+    return {glm::normalize(*axis), degrees};
 }
 
 void SceneBuilder::add_objects() {
     const auto sections = document_.all("object");
     if (sections.empty()) document_.fail(1, "the scene has no [[object]]");
     for (const SceneSection* section : sections) add_object(*section);
-    const auto unused =
-        std::find_if(motions_.begin(), motions_.end(), [](const auto& m) { return !m.second.used; });
-    if (unused == motions_.end()) return;
-    const auto& [name, entry] = *unused;
-    document_.fail(entry.section->line,
-                   "motion '" + name + "' moves no object; write motion = \"" + name +
-                       "\" in one of: " + short_list({object_names_.begin(), object_names_.end()}));
 }
 
 void SceneBuilder::add_object(const SceneSection& section) {
@@ -250,7 +253,7 @@ Placement SceneBuilder::placement_of(const SceneSection& section, const Imported
     Placement placement;
     const Vec3 up = section.has("up_axis") ? axis_vector(*section.text("up_axis")) : meshes.up;
     const Mat3 turn = up == Vec3(0.0) ? Mat3(1.0) : turn_between(up, scene_.up);
-    const Quat rotation = rotation_of(section);
+    const Quat rotation = turn_of(section).rotation();
     placement.scale =
         section.number("scale").value_or(1.0) * (meshes.unit_stated ? meshes.metres_per_unit : metres_);
     const Mat3 turned = rotation == Quat(1.0, 0.0, 0.0, 0.0) ? turn : glm::mat3_cast(rotation) * turn;
@@ -266,7 +269,7 @@ MaterialId SceneBuilder::file_material(const std::string& file, const model::Mat
     if (stated != materials_.end()) return stated->second;
     const auto same = [&](const model::Material& m) {
         return m.reflectance == material.reflectance && m.exitance == material.exitance &&
-               m.sides == material.sides;
+               m.sides == material.sides && m.dimming == material.dimming;
     };
     const std::string second_name = material.name + " (" + file + ")";
     for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
@@ -303,7 +306,7 @@ void SceneBuilder::derive_materials(const SceneSection& section, model::Mesh& me
     if (section.has("exitance") && section.has("flux"))
         document_.fail(section.line_of("flux"), "give either 'exitance' or 'flux'");
     const bool emits = section.has("exitance") || section.has("flux");
-    if (!sides && !emits) return;
+    if (!sides && !emits && !section.has("dimming")) return;
 
     std::map<MaterialId, MaterialId> derived;
     for (MaterialId& material : mesh.materials) {
@@ -312,11 +315,22 @@ void SceneBuilder::derive_materials(const SceneSection& section, model::Mesh& me
             model::Material copy = scene_.materials[material.value];
             copy.name = unique_name(copy.name + " (" + *section.text("name") + ")", material_names_);
             copy.sides = sides.value_or(copy.sides);
+            if (section.has("dimming")) copy.dimming = dimming_of(section);
             scene_.materials.push_back(std::move(copy));
         }
         material = place->second;
     }
-    if (!emits) return;
+    if (emits) set_exitance(section, mesh, derived);
+    const bool dark = std::none_of(derived.begin(), derived.end(), [&](const auto& pair) {
+        return scene_.materials[pair.second.value].emits();
+    });
+    if (section.has("dimming") && dark)
+        document_.fail(section.line_of("dimming"),
+                       "object '" + *section.text("name") + "' emits no light that could be dimmed");
+}
+
+void SceneBuilder::set_exitance(const SceneSection& section, const model::Mesh& mesh,
+                                const std::map<MaterialId, MaterialId>& derived) {
     std::vector<double> exitance = per_channel(section, section.has("flux") ? "flux" : "exitance");
     if (section.has("flux")) {
         const double area = emitting_area(mesh, scene_.materials);

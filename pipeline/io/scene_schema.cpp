@@ -71,6 +71,12 @@ constexpr SectionSchema section_table[] = {
     {"object", true, "A body: one mesh that rests or moves rigidly."},
     {"motion", true, "A rigid path: its keyframes, or a CSV file, or an animated node of a glTF file."},
     {"motion.keyframe", true, "One stop of a motion, relative to the place at rest; times increase."},
+    {"dimming", true,
+     "How bright lamps are in time: the exitance of the objects and materials that name it is multiplied by "
+     "a factor. "
+     "Its keyframes or a CSV file."},
+    {"dimming.keyframe", true,
+     "One stop of a dimming; times increase. Before the first and after the last one the factor stays."},
     {"meter", true, "A rectangle of sensor points that face edge_u x edge_v."},
     {"effects", false, "Decisions taken out of the plan's hands."},
     {"view", false, "The camera of pictures."},
@@ -121,6 +127,8 @@ constexpr KeySchema key_table[] = {
      "light emitted per area, one number or one per channel"},
     {"material", "sides", Kind::Text, any_number, "auto front both", "", optional_key, "auto",
      "which sides exchange light; auto: the outside of closed parts, both sides of sheets"},
+    {"material", "dimming", Kind::Text, any_number, "", "", optional_key, "steady",
+     "name of the dimming that its exitance follows"},
     {"material", "two_sided", Kind::Boolean, any_number, "", "", optional_key, "",
      "true: sides = both, false: front"},
 
@@ -143,6 +151,8 @@ constexpr KeySchema key_table[] = {
      "true: sides = both, false: front"},
     {"object", "motion", Kind::Text, any_number, "", "", optional_key, "rests",
      "name of the motion it follows"},
+    {"object", "dimming", Kind::Text, any_number, "", "", optional_key, "that of its materials",
+     "name of the dimming that the exitance of all its faces follows"},
     {"object", "scale", Kind::Number, positive, "", "1", optional_key, "1",
      "factor on the mesh file's coordinates"},
     {"object", "rotation_axis", Kind::Vector, any_number, "", "1", optional_key, "", "axis of rotation_deg"},
@@ -154,9 +164,11 @@ constexpr KeySchema key_table[] = {
      "up axis of the mesh file; where it differs from the scene's, the mesh is turned"},
 
     {"motion", "name", Kind::Text, any_number, "", "", required_key, "",
-     "what objects call it; some object must"},
+     "what objects, meters and other motions call it; some must"},
+    {"motion", "parent", Kind::Text, any_number, "", "", optional_key, "the world",
+     "name of the motion that carries this one: first this moves the body, then the parent does"},
     {"motion", "interpolation", Kind::Text, any_number, "step linear cubic", "", optional_key, "linear",
-     "of translations (cubic: Catmull-Rom); rotations by slerp, or in steps"},
+     "of translations (cubic: Catmull-Rom); rotations evenly about one axis between keyframes, or in steps"},
     {"motion", "pivot", Kind::Vector, any_number, "", "length", optional_key, "[0, 0, 0]",
      "centre of rotations, in the place at rest"},
     {"motion", "csv", Kind::Text, any_number, "", "path", optional_key, "",
@@ -170,7 +182,18 @@ constexpr KeySchema key_table[] = {
     {"motion.keyframe", "rotation_axis", Kind::Vector, any_number, "", "1", optional_key, "",
      "axis of rotation_deg"},
     {"motion.keyframe", "rotation_deg", Kind::Number, any_number, "", "degrees", optional_key, "0",
-     "turn about the pivot; less than 180 degrees from one keyframe to the next"},
+     "turn about the pivot; several times round where keyframes share their axis, else the shortest way"},
+
+    {"dimming", "name", Kind::Text, any_number, "", "", required_key, "",
+     "what objects and materials call it; some must"},
+    {"dimming", "interpolation", Kind::Text, any_number, "step linear", "", optional_key, "linear",
+     "between keyframes"},
+    {"dimming", "csv", Kind::Text, any_number, "", "path", optional_key, "",
+     "table with the columns time_s, factor"},
+
+    {"dimming.keyframe", "time_s", Kind::Number, any_number, "", "s", required_key, "", "when"},
+    {"dimming.keyframe", "factor", Kind::Number, not_negative, "", "1", required_key, "",
+     "on the exitance; 0: switched off"},
 
     {"meter", "name", Kind::Text, any_number, "", "", required_key, "", "its name in meters.csv"},
     {"meter", "origin", Kind::Vector, any_number, "", "length", required_key, "",
@@ -181,6 +204,8 @@ constexpr KeySchema key_table[] = {
     {"meter", "count_u", Kind::Integer, count_range, "", "", optional_key, "1",
      "sensors along edge_u, at cell centres"},
     {"meter", "count_v", Kind::Integer, count_range, "", "", optional_key, "1", "sensors along edge_v"},
+    {"meter", "motion", Kind::Text, any_number, "", "", optional_key, "rests",
+     "name of the motion that carries its points and the way they face"},
 
     {"effects", "interreflection", Kind::Boolean, any_number, "", "", optional_key, "the plan decides",
      "false: direct light only"},

@@ -24,7 +24,7 @@ struct SceneSection {
     std::string name;
     int line = 0;
     std::map<std::string, SceneValue> values;
-    std::vector<SceneSection> children; ///< motion.keyframe
+    std::vector<SceneSection> children; ///< motion.keyframe, dimming.keyframe
 
     bool has(const std::string& key) const { return values.count(key) > 0; }
     int line_of(const std::string& key) const; ///< of the section where the key was not given

@@ -30,25 +30,55 @@ struct Material {
     std::vector<double> reflectance; ///< rho per channel [1], in [0, 1)
     std::vector<double> exitance;    ///< M emitted per channel [W/m2 or lm/m2], >= 0
     Sides sides = Sides::Auto;
+    std::optional<DimmingId> dimming = {}; ///< what scales the exitance in time; unset: steady
 
-    bool emits() const; ///< whether any channel's exitance is above 0
+    bool emits() const; ///< whether any channel's exitance, not dimmed, is above 0
 };
 
 enum class Interpolation : std::uint8_t { Step, Linear, Cubic };
+
+/// Rates of change on either side of a keyframe, for splines through given slopes.
+struct KeyTangents {
+    Vec3 translation_in{0.0}, translation_out{0.0};                         ///< [m/s]
+    Quat rotation_in{0.0, 0.0, 0.0, 0.0}, rotation_out{0.0, 0.0, 0.0, 0.0}; ///< [1/s]
+    bool operator==(const KeyTangents&) const = default;
+};
 
 /// One stop of a motion; the pose of a body relative to its rest position.
 struct Keyframe {
     double time_s = 0.0;
     Vec3 translation{0.0};             ///< [m]
     Quat rotation{1.0, 0.0, 0.0, 0.0}; ///< about the motion's pivot
+    std::optional<Vec3> turn =
+        {}; ///< from the keyframe before: axis x angle [rad], which may be beyond a half turn;
+            ///< unset: the shortest way
+    std::optional<KeyTangents> tangents = {}; ///< on all keyframes of a motion or on none
+    bool operator==(const Keyframe&) const = default;
 };
 
 /// A rigid path in time. Before the first and after the last keyframe the body rests.
 struct Motion {
     std::string name;
-    Interpolation interpolation = Interpolation::Linear; ///< of translations; rotations by slerp (or step)
-    Vec3 pivot{0.0};                                     ///< rotation centre in the rest position [m]
-    std::vector<Keyframe> keyframes;                     ///< at least one, times strictly increasing
+    Interpolation interpolation =
+        Interpolation::Linear;       ///< of translations; cubic: by tangents, else Catmull-Rom
+    Vec3 pivot{0.0};                 ///< rotation centre in the rest position [m]
+    std::vector<Keyframe> keyframes; ///< at least one, times strictly increasing
+    Interpolation rotation_interpolation = Interpolation::Linear; ///< linear: slerp; cubic: by tangents
+    std::optional<MotionId> parent = {}; ///< carries this motion: world = parent (own (rest)); no circles
+};
+
+/// The exitance of lamps in time, as a factor. Before the first and after the last key it keeps their factor.
+struct Dimming {
+    struct Key {
+        double time_s = 0.0;
+        double factor = 1.0; ///< on the exitance [1], >= 0
+        bool operator==(const Key&) const = default;
+    };
+    std::string name;
+    Interpolation interpolation = Interpolation::Linear; ///< step or linear
+    std::vector<Key> keys;                               ///< at least one, times strictly increasing
+
+    double factor_at(double time_s) const; ///< [1]
 };
 
 /// A body: one mesh in world metres at rest, optionally moving. Its faces name their materials.
@@ -80,6 +110,7 @@ struct GridMeter {
     Vec3 edge_u{1.0, 0.0, 0.0};             ///< [m]
     Vec3 edge_v{0.0, 1.0, 0.0};             ///< [m]; sensors face edge_u x edge_v
     std::uint32_t count_u = 1, count_v = 1; ///< points at cell centres
+    std::optional<MotionId> motion = {};    ///< that carries the points and the way they face; unset: rests
 };
 
 /// A camera for pictures; unset parts are chosen from the scene's bounds.
@@ -118,13 +149,20 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Object> objects;
     std::vector<Motion> motions;
+    std::vector<Dimming> dimmings;
     std::vector<GridMeter> meters;
     std::filesystem::path source; ///< the scene file or mesh it came from
 };
 
+/// Light emitted at a time, dimmed: one list over channels per material [W/m2 or lm/m2].
+std::vector<std::vector<double>> exitances_at(const Scene& scene, double time_s);
+
+/// Whether some lamp is dimmed to different factors in two frames.
+bool exitance_changes(const Scene& scene);
+
 /// Checks what every stage relies on: sizes per channel, reflectance in [0,1), ids in range, increasing keyframe times,
-/// finite coordinates, at least one face.
-/// @throws OptionError, GeometryError  naming the material, object or motion
+/// parents without circles, finite coordinates, at least one face.
+/// @throws OptionError, GeometryError  naming the material, object, motion or dimming
 void check(const Scene& scene);
 
 } // namespace kinelux::model

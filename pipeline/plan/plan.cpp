@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "geometry/settle.h"
 #include "geometry/surface.h"
 
 namespace kinelux::plan {
@@ -136,19 +138,21 @@ Effect static_occlusion(const Scene& scene, const model::PatchSet& set, Plan& pl
     return effect;
 }
 
-bool really_moves(const Scene& scene, const model::Motion& motion) {
-    if (scene.time.frames < 2) return false;
-    return std::any_of(motion.keyframes.begin(), motion.keyframes.end(), [&](const model::Keyframe& key) {
-        return key.translation != motion.keyframes.front().translation ||
-               key.rotation != motion.keyframes.front().rotation;
-    });
+std::pair<double, double> factors_over_frames(const Scene& scene, const model::Dimming& dimming) {
+    double least = dimming.factor_at(scene.time.start_s), greatest = least;
+    for (std::uint32_t frame = 1; frame < scene.time.frames; ++frame) {
+        const double factor = dimming.factor_at(scene.time.time_of_frame(frame));
+        least = std::min(least, factor);
+        greatest = std::max(greatest, factor);
+    }
+    return {least, greatest};
 }
 
 Effect motion(const Scene& scene, Plan& plan) {
     std::string names;
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         const model::Object& object = scene.objects[o];
-        if (object.motion && really_moves(scene, scene.motions[object.motion->value])) {
+        if (object.motion && geometry::changes_pose(scene, *object.motion)) {
             plan.moving_objects.push_back(ObjectId(o));
             names += (names.empty() ? "" : ", ") + object.name;
         }
@@ -157,7 +161,27 @@ Effect motion(const Scene& scene, Plan& plan) {
     return {"motion", moves,
             moves ? fmt::format("{} of {} bodies move over {} frames: {}", plan.moving_objects.size(),
                                 scene.objects.size(), scene.time.frames, names)
-                  : "nothing changes with time: one solve serves all frames",
+                  : "no body moves: no block changes with time",
+            0.0, false};
+}
+
+Effect dimming(const Scene& scene, bool moves) {
+    std::string names;
+    for (std::size_t d = 0; d < scene.dimmings.size(); ++d) {
+        const model::Dimming& dimming = scene.dimmings[d];
+        const auto [least, greatest] = factors_over_frames(scene, dimming);
+        if (least != greatest)
+            names += fmt::format("{}{} ({:.3g} to {:.3g})", names.empty() ? "" : ", ", dimming.name, least,
+                                 greatest);
+    }
+    if (!names.empty())
+        return {"dimming", true,
+                fmt::format("exitance changes over {} frames, which no block depends on: {}",
+                            scene.time.frames, names),
+                0.0, false};
+    return {"dimming", false,
+            moves ? "every lamp is steady"
+                  : "every lamp is steady and no body moves: one solve serves all frames",
             0.0, false};
 }
 
@@ -198,6 +222,7 @@ model::Plan plan_effects(const model::Scene& scene, const model::PatchSet& patch
     plan.effects.push_back(static_occlusion(scene, patches, plan));
     plan.effects.push_back(motion(scene, plan));
     plan.effects.push_back(moving_occlusion(scene, plan));
+    plan.effects.push_back(dimming(scene, !plan.moving_objects.empty()));
     const bool clusters = !tree.clusters.empty();
     plan.effects.push_back({"clusters", clusters,
                             clusters ? fmt::format("{} small triangles in {} clusters",

@@ -36,9 +36,10 @@ double largest(const std::vector<double>& values) {
 /// The faces that emit, drawn with a probability proportional to area x exitance.
 class Lights {
 public:
-    Lights(const World& world, const model::Scene& scene) {
+    /// @param exitances  per material, at the time asked for
+    Lights(const World& world, const std::vector<std::vector<double>>& exitances) {
         for (const WorldTriangle& triangle : world.triangles) {
-            const double exitance = largest(scene.materials[triangle.material.value].exitance);
+            const double exitance = largest(exitances[triangle.material.value]);
             if (!(exitance > 0.0) || !(triangle.area > 0.0)) continue;
             faces_.push_back(&triangle);
             cumulative_.push_back((cumulative_.empty() ? 0.0 : cumulative_.back()) +
@@ -98,7 +99,8 @@ public:
     Tracer(const model::Scene& scene, double time_s)
         : scene_(scene),
           world_(scene, time_s),
-          lights_(world_, scene),
+          exitances_(model::exitances_at(scene, time_s)),
+          lights_(world_, exitances_),
           occluders_(visibility::bodies_of(scene)) {
         occluders_.set_poses(geometry::object_poses(scene, time_s));
     }
@@ -121,6 +123,7 @@ private:
 
     const model::Scene& scene_;
     World world_;
+    std::vector<std::vector<double>> exitances_; ///< per material
     Lights lights_;
     Occluders occluders_;
 };
@@ -129,7 +132,7 @@ void Tracer::add_light(const Vertex& vertex, std::uint32_t bounce, Path& path) c
     const Lights::Draw light = lights_.draw(sample(path, bounce, LightStream));
     const double g = exchange(vertex, light.position, *light.face);
     if (!(g > 0.0) || occluders_.occluded(vertex.position, light.position)) return;
-    const std::vector<double>& exitance = scene_.materials[light.face->material.value].exitance;
+    const std::vector<double>& exitance = exitances_[light.face->material.value];
     const double weight = g / (lights_.density(exitance) + g);
     for (std::size_t c = 0; c < path.irradiance.size(); ++c)
         path.irradiance[c] += path.throughput[c] * exitance[c] * weight;
@@ -144,11 +147,12 @@ bool Tracer::bounce(Vertex& vertex, std::uint32_t bounce, Path& path) const {
     const bool front = glm::dot(hit->normal, direction) < 0.0;
     if (!front && !face.both_sides) return false;
     const model::Material& material = scene_.materials[face.material.value];
-    if (material.emits()) {
+    const std::vector<double>& exitance = exitances_[face.material.value];
+    if (largest(exitance) > 0.0) {
         const double g = exchange(vertex, hit->position, face);
-        const double weight = g / (lights_.density(material.exitance) + g);
+        const double weight = g / (lights_.density(exitance) + g);
         for (std::size_t c = 0; c < path.irradiance.size() && g > 0.0; ++c)
-            path.irradiance[c] += path.throughput[c] * material.exitance[c] * weight;
+            path.irradiance[c] += path.throughput[c] * exitance[c] * weight;
     }
     const double survival = largest(material.reflectance);
     if (!(sample(path, bounce, RouletteStream).x < survival)) return false;

@@ -93,14 +93,19 @@ DirectLightOptions direct_light_options_for(const model::Scene& scene) {
 }
 
 DirectLight::DirectLight(std::span<const geometry::ElementShape> sources, const model::Scene& scene,
-                         const visibility::Occluders& occluders, const DirectLightOptions& options)
+                         double time_s, const visibility::Occluders& occluders,
+                         const DirectLightOptions& options)
     : occluders_(occluders), options_(options) {
+    const auto exitances = model::exitances_at(scene, time_s);
+    const auto shines = [](const std::vector<double>& exitance) {
+        return std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
+    };
     std::map<std::pair<ObjectId, MaterialId>, std::vector<const geometry::ElementShape*>> groups;
     for (const geometry::ElementShape& element : sources)
-        if (scene.materials[element.material.value].emits())
+        if (shines(exitances[element.material.value]))
             groups[{element.object, element.material}].push_back(&element);
     for (const auto& [owner, elements] : groups)
-        sources_.push_back({light_panels(elements), scene.materials[owner.second.value].exitance});
+        sources_.push_back({light_panels(elements), exitances[owner.second.value]});
 }
 
 double DirectLight::visible_share(const Receiver& receiver, const Source& source,

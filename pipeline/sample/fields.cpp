@@ -248,7 +248,8 @@ model::SurfaceFields SurfaceSampler::fields(const model::UnknownLayout& layout,
     for (const geometry::ElementShape& element : elements_)
         if (scene_.materials[element.material.value].emits())
             sources.push_back(geometry::moved(element, poses[element.object.value]));
-    const DirectLight direct_light(sources, scene_, occluders, options);
+    const DirectLight direct_light(sources, scene_, frame.time_s, occluders, options);
+    const auto exitances = model::exitances_at(scene_, frame.time_s);
     const auto evaluate = [&](std::size_t p, std::vector<double>& direct, std::vector<double>& bounced) {
         const geometry::Pose& pose = poses[mesh_.point_objects[p]];
         fields.points[p] = pose.point(mesh_.points[p]);
@@ -257,11 +258,12 @@ model::SurfaceFields SurfaceSampler::fields(const model::UnknownLayout& layout,
                                  pose.point(rest.ray_origin.value_or(rest.position))},
                                 p, direct);
         indirect(p, layout, frame.irradiance_indirect, bounced);
-        const model::Material& material = scene_.materials[materials_[p].value];
+        const std::vector<double>& exitance = exitances[materials_[p].value];
+        const std::vector<double>& reflectance = scene_.materials[materials_[p].value].reflectance;
         for (std::size_t c = 0; c < channels; ++c) {
             const double irradiance = std::max(0.0, direct[c] + bounced[c]);
-            const std::array<double, 4> values{material.exitance[c] + material.reflectance[c] * irradiance,
-                                               irradiance, direct[c], bounced[c]};
+            const std::array<double, 4> values{exitance[c] + reflectance[c] * irradiance, irradiance,
+                                               direct[c], bounced[c]};
             for (std::size_t a = 0; a < values.size(); ++a)
                 fields.point_arrays[a].values[p * channels + c] = static_cast<float>(values[a]);
         }

@@ -62,14 +62,16 @@ Gather::Gather(std::span<const geometry::ElementShape> elements, const model::Sc
       layout_(layout),
       frame_(frame),
       occluders_(occluders),
+      exitances_(model::exitances_at(scene, frame.time_s)),
       channels_(scene.channels.size()) {}
 
 // Radiosity less exitance at a point of an element, and the estimated error of it.
 void Gather::reflected(std::size_t element, std::span<const double> basis, std::span<double> values) const {
-    const model::Material& material = scene_.materials[elements_[element].material.value];
+    const MaterialId id = elements_[element].material;
+    const model::Material& material = scene_.materials[id.value];
     const std::size_t offset = layout_.offsets[element];
     for (std::size_t c = 0; c < channels_; ++c) {
-        values[c] = -material.exitance[c];
+        values[c] = -exitances_[id.value][c];
         for (std::size_t k = 0; k < basis.size(); ++k)
             values[c] += basis[k] * frame_.radiosity[(offset + k) * channels_ + c];
     }

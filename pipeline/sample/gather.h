@@ -39,6 +39,7 @@ private:
     const model::UnknownLayout& layout_;
     const model::FrameSolution& frame_;
     const visibility::Occluders& occluders_;
+    std::vector<std::vector<double>> exitances_; ///< per material, at the frame's time
     std::size_t channels_;
 };
 

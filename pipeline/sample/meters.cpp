@@ -27,7 +27,8 @@ struct ObjectSums {
 };
 
 // Basis function 0 is 1 / sqrt(area), so sqrt(area) times its coefficient is the integral of the field.
-void add_element(const geometry::ElementShape& element, std::size_t index, const model::Material& material,
+void add_element(const geometry::ElementShape& element, std::size_t index,
+                 std::span<const double> reflectance, std::span<const double> exitance,
                  const model::UnknownLayout& layout, const model::FrameSolution& frame, ObjectSums& sums) {
     const std::size_t channels = sums.flux.size();
     const double root = std::sqrt(element.area);
@@ -38,10 +39,10 @@ void add_element(const geometry::ElementShape& element, std::size_t index, const
     for (std::size_t c = 0; c < channels; ++c) {
         const std::size_t first = layout.offsets[index] * channels + c;
         sums.flux[c] += root * frame.radiosity[first];
-        sums.emitted[c] += element.area * material.exitance[c];
+        sums.emitted[c] += element.area * exitance[c];
         sums.irradiance[c] += root * (frame.irradiance_direct[first] + frame.irradiance_indirect[first]);
         sums.irradiance_error[c] += error;
-        sums.flux_error[c] += material.reflectance[c] * error;
+        sums.flux_error[c] += reflectance[c] * error;
     }
 }
 
@@ -66,10 +67,13 @@ private:
 void add_objects(std::span<const geometry::ElementShape> elements, const model::Scene& scene,
                  const model::UnknownLayout& layout, const model::FrameSolution& frame, Table& table) {
     const std::size_t channels = scene.channels.size();
+    const auto exitances = model::exitances_at(scene, frame.time_s);
     std::vector<ObjectSums> sums(scene.objects.size(), ObjectSums(channels));
-    for (std::size_t e = 0; e < elements.size(); ++e)
-        add_element(elements[e], e, scene.materials[elements[e].material.value], layout, frame,
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+        const std::uint32_t material = elements[e].material.value;
+        add_element(elements[e], e, scene.materials[material].reflectance, exitances[material], layout, frame,
                     sums[elements[e].object.value]);
+    }
     for (std::size_t o = 0; o < sums.size(); ++o) {
         const ObjectSums& s = sums[o];
         const std::string& name = scene.objects[o].name;
@@ -84,17 +88,17 @@ void add_objects(std::span<const geometry::ElementShape> elements, const model::
     }
 }
 
-/// Irradiance at the points of a grid: points x (channels + 1), the last is the error estimate.
-std::vector<std::vector<double>> grid_values(const model::GridMeter& grid, std::size_t number,
-                                             std::size_t channels, const DirectLight& direct_light,
-                                             const Gather& gather) {
-    const Vec3 normal = glm::normalize(glm::cross(grid.edge_u, grid.edge_v));
+/// Irradiance at the points of a grid in its pose: points x (channels + 1), the last is the error estimate.
+std::vector<std::vector<double>> grid_values(const model::GridMeter& grid, const geometry::Pose& pose,
+                                             std::size_t number, std::size_t channels,
+                                             const DirectLight& direct_light, const Gather& gather) {
+    const Vec3 normal = pose.direction(glm::normalize(glm::cross(grid.edge_u, grid.edge_v)));
     std::vector<std::vector<double>> values(std::size_t{grid.count_u} * grid.count_v);
     core::parallel_for(values.size(), [&](std::size_t p) {
         const std::size_t column = p % grid.count_u, row = p / grid.count_u;
         const double u = (static_cast<double>(column) + 0.5) / grid.count_u;
         const double v = (static_cast<double>(row) + 0.5) / grid.count_v;
-        const Receiver receiver{grid.origin + u * grid.edge_u + v * grid.edge_v, normal};
+        const Receiver receiver{pose.point(grid.origin + u * grid.edge_u + v * grid.edge_v), normal};
         std::vector<double> direct(channels);
         direct_light.irradiance(receiver, core::mix(core::mix(grid_stream, number), p), direct);
         values[p] = gather.indirect(receiver);
@@ -141,12 +145,14 @@ std::vector<model::MeterReading> meter_readings(std::span<const geometry::Elemen
     elements.reserve(rest_elements.size());
     for (const geometry::ElementShape& element : rest_elements)
         elements.push_back(geometry::moved(element, poses[element.object.value]));
-    const DirectLight direct_light(elements, scene, occluders, options);
+    const DirectLight direct_light(elements, scene, frame.time_s, occluders, options);
     const Gather gather(elements, scene, layout, frame, occluders);
     for (std::size_t g = 0; g < scene.meters.size(); ++g) {
         const model::GridMeter& grid = scene.meters[g];
         if (grid.count_u == 0 || grid.count_v == 0) continue;
-        const auto values = grid_values(grid, g, scene.channels.size(), direct_light, gather);
+        const geometry::Pose pose =
+            grid.motion ? geometry::pose_at(scene, *grid.motion, frame.time_s) : geometry::Pose{};
+        const auto values = grid_values(grid, pose, g, scene.channels.size(), direct_light, gather);
         add_grid(grid, values, scene.channels.size(), model::irradiance_unit(scene.quantity), table);
     }
     return table.take();

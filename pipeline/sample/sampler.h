@@ -38,8 +38,9 @@ class DirectLight {
 public:
     /// @param sources    elements in world position; those whose material emits are the sources, one per object and
     ///                   material
+    /// @param time_s     at which the sources are as bright as the scene's dimmings say [s]
     /// @param occluders  must outlive this, in the same pose
-    DirectLight(std::span<const geometry::ElementShape> sources, const model::Scene& scene,
+    DirectLight(std::span<const geometry::ElementShape> sources, const model::Scene& scene, double time_s,
                 const visibility::Occluders& occluders, const DirectLightOptions& options);
     /// @param stream  a number that belongs to the receiver, so that its samples do not depend on threads
     /// @param result  one value per channel is set [W/m2 or lx]
@@ -110,7 +111,7 @@ model::SurfaceFields surface_fields(const model::DisplayMesh& mesh,
                                     const visibility::Occluders& occluders,
                                     const DirectLightOptions& options);
 
-/// Readings of one frame. Per object and channel: "radiosity" and "irradiance" (area means), "flux" (leaving), and
+/// Readings of one frame; grids that follow a motion are read where they are then. Per object and channel: "radiosity" and "irradiance" (area means), "flux" (leaving), and
 /// "emitted flux". Per grid meter and channel: "irradiance" of each point (meter "name[column,row]") and of the grid
 /// "mean irradiance", "least irradiance", "greatest irradiance".
 std::vector<model::MeterReading> meter_readings(std::span<const geometry::ElementShape> rest_elements,

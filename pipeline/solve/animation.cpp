@@ -43,11 +43,12 @@ Surfaces surfaces_of(const Animation& animation) {
     return surfaces;
 }
 
-/// M of one frame as coefficients, unknowns x channels [W/m2 or lm/m2].
-std::vector<double> exitance_of(const Animation& animation, std::size_t channels) {
+/// M at a time as coefficients, unknowns x channels [W/m2 or lm/m2].
+std::vector<double> exitance_at(const Animation& animation, std::size_t channels, double time_s) {
+    const auto exitances = model::exitances_at(animation.scene, time_s);
     std::vector<double> exitance;
     for (const model::Element& element : animation.elements) {
-        const std::vector<double>& values = animation.scene.materials[element.material.value].exitance;
+        const std::vector<double>& values = exitances[element.material.value];
         exitance.insert(exitance.end(), values.begin(),
                         values.begin() + static_cast<std::ptrdiff_t>(channels));
     }
@@ -243,24 +244,31 @@ public:
 
     /// Brings engine and solver to where they were after the frames that are done.
     void take_up(std::span<const FrameSolution> done, model::SolverState state) {
-        const std::size_t first = engine_.remembers() ? 0 : done.size() - 1;
+        const std::size_t first = engine_.remembers() && moves() ? 0 : done.size() - 1;
         for (std::size_t f = first; f < done.size(); ++f) advance(done[f].time_s);
+        exitance_ = exitance_at(animation_, surfaces_.channels, done.back().time_s);
         if (!state.empty()) solver_.restore(std::move(state), transport());
     }
 
-    FrameSolution solve(std::uint32_t number, double time_s) {
-        const std::vector<model::BlockEntry> entries = advance(time_s);
-        const std::vector<double> exitance = exitance_of(animation_, surfaces_.channels);
-        FrameSolution frame = animation_.plan.bounces == 0 ? direct_only(transport(), surfaces_, exitance)
-                                                           : solver_.solve_frame(transport(), exitance);
-        const model::Coefficients& coefficients = animation_.coefficients;
+    /// @param before  the frame before, null for the first
+    FrameSolution next(const FrameSolution* before, std::uint32_t number, double time_s) {
+        const bool same_blocks = before != nullptr && !moves();
+        std::vector<double> exitance = exitance_at(animation_, surfaces_.channels, time_s);
+        const bool same_lamps = exitance == exitance_;
+        exitance_ = std::move(exitance);
+        FrameSolution frame;
+        if (same_blocks && same_lamps) {
+            frame = *before;
+            frame.sweeps = 0.0;
+        } else {
+            if (same_blocks)
+                recomputed_ = 0;
+            else
+                advance(time_s);
+            frame = solved();
+        }
         frame.frame = number;
         frame.time_s = time_s;
-        frame.blocks_recomputed = recomputed_;
-        frame.element_error = irradiance_errors(coefficients.layout, entries, animation_.areas, exitance,
-                                                frame, surfaces_.channels, coefficients.hierarchy);
-        frame.error_estimate = radiosity_error(coefficients.layout, surfaces_, animation_.areas, frame);
-        spread_channels(surfaces_, frame);
         return frame;
     }
 
@@ -272,14 +280,27 @@ private:
         return linked_;
     }
 
-    /// The blocks of a time. @return  the entries of all of them
-    std::vector<model::BlockEntry> advance(double time_s) {
+    bool moves() const { return !animation_.plan.moving_objects.empty(); }
+
+    /// To the blocks of a time.
+    void advance(double time_s) {
         motion::FrameBlocks changed =
             engine_.advance(time_s, geometry::object_poses(animation_.scene, time_s));
         recomputed_ = static_cast<std::uint32_t>(changed.computed);
-        std::vector<model::BlockEntry> entries = entries_at(animation_.coefficients.static_blocks, changed);
+        entries_ = entries_at(animation_.coefficients.static_blocks, changed);
         blocks_.replace(changed.pairs, std::move(changed.blocks));
-        return entries;
+    }
+
+    FrameSolution solved() {
+        FrameSolution frame = animation_.plan.bounces == 0 ? direct_only(transport(), surfaces_, exitance_)
+                                                           : solver_.solve_frame(transport(), exitance_);
+        const model::Coefficients& coefficients = animation_.coefficients;
+        frame.blocks_recomputed = recomputed_;
+        frame.element_error = irradiance_errors(coefficients.layout, entries_, animation_.areas, exitance_,
+                                                frame, surfaces_.channels, coefficients.hierarchy);
+        frame.error_estimate = radiosity_error(coefficients.layout, surfaces_, animation_.areas, frame);
+        spread_channels(surfaces_, frame);
+        return frame;
     }
 
     const Animation& animation_;
@@ -288,6 +309,8 @@ private:
     TemporalSolver solver_;
     BlockOperator blocks_;
     const LinkedOperator linked_;
+    std::vector<model::BlockEntry> entries_; ///< of all blocks as they are
+    std::vector<double> exitance_;           ///< of the last frame
     std::uint32_t recomputed_ = 0;
 };
 
@@ -300,25 +323,14 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
     model::Solution solution{.layout = animation.coefficients.layout,
                              .channels = static_cast<std::uint32_t>(animation.scene.channels.size()),
                              .frames = std::move(checkpoint.from.solution.frames)};
-    const bool moves = !animation.plan.moving_objects.empty();
     Frames all(animation, engine, options);
-    if (moves && !solution.frames.empty()) all.take_up(solution.frames, std::move(checkpoint.from.state));
+    if (!solution.frames.empty()) all.take_up(solution.frames, std::move(checkpoint.from.state));
     for (const std::uint32_t number : frames.subspan(solution.frames.size())) {
         const auto started = std::chrono::steady_clock::now();
-        const double time_s = animation.scene.time.time_of_frame(number);
-        if (!moves && !solution.frames.empty()) {
-            // Nothing moves: the first frame is every frame.
-            FrameSolution same = solution.frames.front();
-            same.frame = number;
-            same.time_s = time_s;
-            same.sweeps = 0.0;
-            same.seconds = 0.0;
-            solution.frames.push_back(std::move(same));
-        } else {
-            solution.frames.push_back(all.solve(number, time_s));
-            solution.frames.back().seconds =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-        }
+        const FrameSolution* before = solution.frames.empty() ? nullptr : &solution.frames.back();
+        FrameSolution frame = all.next(before, number, animation.scene.time.time_of_frame(number));
+        frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+        solution.frames.push_back(std::move(frame));
         if (checkpoint.save) checkpoint.save(solution, all.state());
         progress(solution.frames.back());
     }

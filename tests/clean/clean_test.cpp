@@ -282,6 +282,7 @@ CleanResult panel_in_ceiling(Panel kind) {
     if (kind == Panel::Emitting) object.mesh.materials.assign(2, MaterialId(1));
     if (kind == Panel::Sliding) {
         object.motion = MotionId(0);
+        scene.time = {0.0, 1.0, 3};
         scene.motions = {
             {"slide",
              model::Interpolation::Linear,
@@ -289,6 +290,23 @@ CleanResult panel_in_ceiling(Panel kind) {
              {{0.0, Vec3{0.0}, Quat{1, 0, 0, 0}}, {1.0, Vec3{2.0, 0.0, 0.0}, Quat{1, 0, 0, 0}}}}};
     }
     return cleaned(std::move(scene));
+}
+
+TEST(Clean, a_motion_without_effect_in_the_frames_ends_as_a_body_at_rest_and_a_note) {
+    model::Scene scene = empty_scene();
+    model::Mesh sheet;
+    support::add_sheet(sheet, Vec3{0.0}, Vec3{1.0, 0.0, 0.0}, Vec3{0.0, 1.0, 0.0});
+    add_object(scene, "sheet", sheet).motion = MotionId(0);
+    scene.motions = {{"lift",
+                      model::Interpolation::Linear,
+                      Vec3{0.0},
+                      {{0.0, Vec3{0.0}, Quat{1, 0, 0, 0}}, {1.0, Vec3{0.0, 0.0, 2.0}, Quat{1, 0, 0, 0}}}}};
+    scene.time = {0.5, 0.5, 1};
+    const CleanResult result = cleaned(scene);
+    EXPECT_FALSE(result.scene.objects[0].motion);
+    for (const Vec3& point : result.scene.objects[0].mesh.points) EXPECT_EQ(point.z, 1.0);
+    ASSERT_FALSE(result.reports[0].notes.empty());
+    EXPECT_NE(result.reports[0].notes[0].find("rests"), std::string::npos);
 }
 
 TEST(Clean, lamps_and_sliding_panels_within_a_ceiling_are_lifted_to_its_front) {

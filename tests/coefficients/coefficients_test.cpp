@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -70,6 +72,63 @@ TEST(FormFactors, rows_of_objects_sum_to_one_through_links) {
     const auto factors = form_factors(coefficients, shapes, groups, 2);
     EXPECT_NEAR(factors[0].value + factors[1].value, 1.0, 0.02);
     EXPECT_NEAR(factors[2].value + factors[3].value, 1.0, 0.02);
+}
+
+// Two squares that face each other across a gap and glide together along x, from x = 0 to x = 4, and a square across
+// the gap at a place of the way.
+struct Carriage {
+    model::PatchSet set;
+    model::Scene scene = support::plain_scene(3);
+    model::Plan plan{.degree = 0, .moving_objects = {ObjectId(0), ObjectId(1)}};
+
+    explicit Carriage(double screen_x) {
+        set.patches = {support::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, ObjectId(0)),
+                       support::rectangle({0, 0, 1}, {0, 1, 0}, {1, 0, 0}, ObjectId(1)),
+                       support::rectangle({screen_x, 0, 0.5}, {0.5, 0, 0}, {0, 1, 0}, ObjectId(2))};
+        scene.time = {0.0, 1.0, 9};
+        scene.motions = {{"glide",
+                          model::Interpolation::Linear,
+                          Vec3(0),
+                          {{0.0, Vec3(0), Quat(1, 0, 0, 0)}, {1.0, Vec3(4, 0, 0), Quat(1, 0, 0, 0)}}}};
+        scene.objects[0].motion = scene.objects[1].motion = MotionId(0);
+    }
+    model::Coefficients compute() const {
+        const auto shapes = support::shapes_of(set, 1, 0);
+        const auto occluders = support::occluders_of(set, scene);
+        return compute_coefficients(shapes, scene, plan, occluders, {}, 1e6);
+    }
+    bool recomputes_the_riders() const {
+        const auto& pairs = compute().moving_pairs;
+        return std::find(pairs.begin(), pairs.end(), model::ElementPair{0, 1}) != pairs.end();
+    }
+};
+
+TEST(Coefficients, bodies_that_ride_together_keep_their_block_unless_something_may_come_between_them) {
+    EXPECT_FALSE(Carriage(9.0).recomputes_the_riders()) << "far beyond the end of the way";
+    EXPECT_TRUE(Carriage(2.0).recomputes_the_riders());
+    Carriage beside(2.0);
+    beside.set.patches[2].surface.origin.z = -0.1; // below both: it has both on one side
+    EXPECT_FALSE(beside.recomputes_the_riders());
+    Carriage mover(9.0); // which comes to meet them
+    mover.scene.motions.push_back(
+        {"meet",
+         model::Interpolation::Linear,
+         Vec3(0),
+         {{0.0, Vec3(0), Quat(1, 0, 0, 0)}, {1.0, Vec3(-6, 0, 0), Quat(1, 0, 0, 0)}}});
+    mover.scene.objects[2].motion = MotionId(1);
+    mover.plan.moving_objects.push_back(ObjectId(2));
+    EXPECT_TRUE(mover.recomputes_the_riders());
+    mover.plan.moving_occlusion = false;
+    EXPECT_FALSE(mover.recomputes_the_riders()) << "the scene says that movers cast no shadow";
+}
+
+TEST(Coefficients, a_scene_at_rest_has_no_pairs_that_change) {
+    Carriage still(2.0);
+    for (model::Object& object : still.scene.objects) object.motion.reset();
+    still.plan.moving_objects.clear();
+    const auto coefficients = still.compute();
+    EXPECT_TRUE(coefficients.moving_pairs.empty());
+    EXPECT_TRUE(coefficients.crossed_pairs.empty());
 }
 
 TEST(Coefficients, are_the_same_bytes_on_one_thread_and_two) {

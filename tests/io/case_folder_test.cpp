@@ -101,12 +101,21 @@ TEST_F(CaseFolderTest, scene_materials_motions_and_meters_come_back_exactly) {
         EXPECT_TRUE(same_bits(read.materials[m].reflectance, wanted.materials[m].reflectance));
         EXPECT_TRUE(same_bits(read.materials[m].exitance, wanted.materials[m].exitance));
         EXPECT_EQ(read.materials[m].sides, wanted.materials[m].sides);
+        EXPECT_EQ(read.materials[m].dimming, wanted.materials[m].dimming);
     }
-    ASSERT_EQ(read.motions.size(), 1u);
-    EXPECT_EQ(read.motions[0].name, wanted.motions[0].name);
-    EXPECT_EQ(read.motions[0].interpolation, wanted.motions[0].interpolation);
-    EXPECT_TRUE(same_bits(read.motions[0].pivot, wanted.motions[0].pivot));
-    EXPECT_TRUE(same_bits(read.motions[0].keyframes, wanted.motions[0].keyframes));
+    ASSERT_EQ(read.motions.size(), wanted.motions.size());
+    for (std::size_t m = 0; m < wanted.motions.size(); ++m) {
+        EXPECT_EQ(read.motions[m].name, wanted.motions[m].name);
+        EXPECT_EQ(read.motions[m].parent, wanted.motions[m].parent);
+        EXPECT_EQ(read.motions[m].interpolation, wanted.motions[m].interpolation);
+        EXPECT_EQ(read.motions[m].rotation_interpolation, wanted.motions[m].rotation_interpolation);
+        EXPECT_TRUE(same_bits(read.motions[m].pivot, wanted.motions[m].pivot));
+        EXPECT_EQ(read.motions[m].keyframes, wanted.motions[m].keyframes);
+    }
+    ASSERT_EQ(read.dimmings.size(), 1u);
+    EXPECT_EQ(read.dimmings[0].name, wanted.dimmings[0].name);
+    EXPECT_EQ(read.dimmings[0].interpolation, wanted.dimmings[0].interpolation);
+    EXPECT_EQ(read.dimmings[0].keys, wanted.dimmings[0].keys);
     ASSERT_EQ(read.meters.size(), 1u);
     EXPECT_EQ(read.meters[0].name, wanted.meters[0].name);
     EXPECT_TRUE(same_bits(read.meters[0].origin, wanted.meters[0].origin));
@@ -114,6 +123,7 @@ TEST_F(CaseFolderTest, scene_materials_motions_and_meters_come_back_exactly) {
     EXPECT_TRUE(same_bits(read.meters[0].edge_v, wanted.meters[0].edge_v));
     EXPECT_EQ(read.meters[0].count_u, wanted.meters[0].count_u);
     EXPECT_EQ(read.meters[0].count_v, wanted.meters[0].count_v);
+    EXPECT_EQ(read.meters[0].motion, wanted.meters[0].motion);
 }
 
 TEST_F(CaseFolderTest, scene_meshes_come_back_exactly) {

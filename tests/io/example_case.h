@@ -53,7 +53,15 @@ inline model::Scene example_scene() {
     scene.motions[0].keyframes = {
         {0.0, Vec3(0.0), Quat(1.0, 0.0, 0.0, 0.0)},
         {awkward, Vec3(1.0, 0.5, 0.0), Quat(std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5))}};
-    scene.meters = {{"desk", Vec3(0.1, 0.1, 0.7), Vec3(1, 0, 0), Vec3(0, 1, 0), 4, 3}};
+    scene.motions.push_back({"turn", model::Interpolation::Step, Vec3(awkward), {{0.0}}});
+    scene.motions[1].keyframes[0].turn = Vec3(0.0, 7.0, awkward);
+    scene.motions[1].keyframes[0].tangents = {Vec3(awkward), Vec3(1.0), Quat(0, 0, 0, awkward),
+                                              Quat(1, 2, 3, 4)};
+    scene.motions[1].rotation_interpolation = model::Interpolation::Cubic;
+    scene.motions[1].parent = MotionId(0);
+    scene.dimmings = {{"evening", model::Interpolation::Step, {{0.0, 1.0}, {awkward, awkward}}}};
+    scene.materials[1].dimming = DimmingId(0);
+    scene.meters = {{"desk", Vec3(0.1, 0.1, 0.7), Vec3(1, 0, 0), Vec3(0, 1, 0), 4, 3, MotionId(1)}};
     scene.source = "scenes/room.toml";
     return scene;
 }

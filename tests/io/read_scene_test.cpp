@@ -6,9 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "geometry/pose.h"
-#include "io/gltf_writer.h"
 #include "io/scene_schema.h"
+#include "io/scene_text.h"
 #include "io/temporary_folder.h"
 
 namespace kinelux::io {
@@ -17,47 +16,6 @@ namespace {
 using support::put_bytes;
 
 constexpr double pi = 3.14159265358979323846;
-
-// Two unit squares, "floor" with material "wood" and "shelf" without one; the third group is a closed tetrahedron.
-const char* const mesh_text = "mtllib room.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
-                              "g floor\nusemtl wood\nf 1 2 3 4\ng shelf\nusemtl glass\nf 4 3 2 1\n"
-                              "g block\nf 1 3 2\nf 1 2 5\nf 1 5 3\nf 2 3 5\n";
-
-class ReadSceneTest : public testing::Test {
-protected:
-    ReadSceneTest() {
-        put("room.obj", mesh_text);
-        put("room.mtl", "newmtl wood\nKd 0.3 0.2 0.1\nKe 1 2 3\nnewmtl glass\nKd 0.1 0.1 0.1\n");
-    }
-    void put(const std::string& name, const std::string& text) const {
-        put_bytes(folder.path() / name, text);
-    }
-    model::Scene read(const std::string& text, bool allow_outside = false) const {
-        put("scene.toml", text);
-        return read_scene(folder.path() / "scene.toml", {allow_outside});
-    }
-    // "scene.toml:line: text" or whatever was thrown.
-    std::string message_of(const std::string& text) const {
-        try {
-            read(text);
-        } catch (const core::Error& error) {
-            std::string message = error.what();
-            const std::string prefix = folder.path().string() + "/";
-            for (std::size_t at; (at = message.find(prefix)) != std::string::npos;)
-                message.erase(at, prefix.size());
-            return message;
-        }
-        return "nothing thrown";
-    }
-    static void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-12) {
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance);
-    }
-
-    support::TemporaryFolder folder;
-};
-
-const std::string head = "format = 1\n";
-const std::string floor_object = "[[object]]\nname = \"floor\"\nmesh = \"room.obj\"\ngroup = \"floor\"\n";
 
 // A scene file with every key there is.
 const char* const everything = R"(
@@ -91,6 +49,7 @@ mesh = "room.obj"
 group = "floor"
 material = "paint"
 exitance = [1, 2]
+dimming = "evening"
 motion = "turn"
 scale = 1000
 translation = [1000, 2000, 3000]
@@ -116,8 +75,15 @@ rotation_axis = [0, 1, 0]
 rotation_deg = 180
 [[motion]]
 name = "path"
+parent = "turn"
 interpolation = "cubic"
 csv = "path.csv"
+[[dimming]]
+name = "evening"
+interpolation = "linear"
+[[dimming.keyframe]]
+time_s = 1
+factor = 0.5
 [[meter]]
 name = "desk"
 origin = [0, 0, 700]
@@ -313,21 +279,6 @@ TEST_F(ReadSceneTest, unknown_names_are_errors_that_list_what_exists) {
               "scene.toml:5: motion 'spin' moves no object; write motion = \"spin\" in one of: o");
 }
 
-TEST_F(ReadSceneTest, motions_need_one_source_and_increasing_times) {
-    const std::string object = floor_object + "motion = \"m\"\n[[motion]]\nname = \"m\"\n";
-    EXPECT_EQ(message_of(head + object),
-              "scene.toml:7: motion 'm' needs one of: [[motion.keyframe]], 'csv', 'gltf_node'");
-    EXPECT_EQ(
-        message_of(head + object + "[[motion.keyframe]]\ntime_s = 1\n[[motion.keyframe]]\ntime_s = 1\n"),
-        "scene.toml:12: keyframes must be in the order of increasing time_s");
-    put("m.csv", "time_s,x,y,z\n0,0,0,0\n1,0,zero,0\n");
-    EXPECT_EQ(message_of(head + object + "csv = \"m.csv\"\n"),
-              "scene.toml:9: m.csv:3: 'zero' is not a number");
-    EXPECT_EQ(message_of(head + object + "csv = \"n.csv\"\n"), "scene.toml:9: n.csv: there is no such file");
-    EXPECT_EQ(message_of(head + object + "gltf_node = \"a\"\n"),
-              "scene.toml:9: 'room.obj' of object 'floor' has no animated node 'a'; animated are: none");
-}
-
 TEST_F(ReadSceneTest, files_outside_the_folder_are_refused_unless_allowed) {
     const support::TemporaryFolder other;
     put_bytes(other.path() / "mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -364,66 +315,6 @@ TEST_F(ReadSceneTest, scene_file_cut_off_at_any_length_ends_in_an_error_or_a_val
         }
     }
     EXPECT_NO_THROW(read(whole));
-}
-
-// A glTF file (metres, y up) with a square whose node glides along its own y and turns about it.
-class ReadSceneGltfTest : public ReadSceneTest {
-protected:
-    ReadSceneGltfTest() {
-        support::GltfWriter writer;
-        writer.add({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
-        writer.add({0.5F, 1.5F}, "SCALAR");
-        writer.add({2, 0, 0, 2, 3, 0}, "VEC3");
-        const float h = std::sqrt(0.5F);
-        writer.add({0, 0, 0, 1, 0, h, 0, h}, "VEC4");
-        put("lift.glb",
-            writer.glb(R"("scenes":[{"nodes":[0]}],"nodes":[{"name":"lift","mesh":0,"translation":[2,0,0]}],
-            "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"animations":[{"samplers":[{"input":1,"output":2},
-            {"input":1,"output":3}],"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},
-            {"sampler":1,"target":{"node":0,"path":"rotation"}}]}])"));
-    }
-};
-
-TEST_F(ReadSceneGltfTest, bare_file_brings_its_own_animation_unit_and_up_axis) {
-    const model::Scene scene = read_scene(folder.path() / "lift.glb", {});
-    EXPECT_EQ(scene.up, Vec3(0, 1, 0));
-    EXPECT_EQ(scene.time.start_s, 0.5);
-    EXPECT_EQ(scene.time.end_s, 1.5);
-    EXPECT_EQ(scene.time.frames, 25U);
-    ASSERT_TRUE(scene.objects.at(0).motion);
-    expect_near(geometry::object_poses(scene, 1.5).at(0).point({3, 0, 0}), {2, 3, -1}, 1e-6);
-}
-
-TEST_F(ReadSceneGltfTest, node_motion_follows_the_placement_of_its_object) {
-    const model::Scene scene = read(head + R"([scene]
-up_axis = "z"
-length_unit = "cm"
-[time]
-end_s = 2
-frames = 3
-[[object]]
-name = "a"
-mesh = "lift.glb"
-motion = "up"
-scale = 2
-translation = [0, 0, 100]
-[[object]]
-name = "b"
-mesh = "lift.glb"
-motion = "up"
-[[object]]
-name = "c"
-mesh = "lift.glb"
-motion = "up"
-[[motion]]
-name = "up"
-gltf_node = "lift"
-)");
-    // glTF metres stay metres, y is turned to z: the corner (3,0,0) rests at (6,0,1), its pivot at (4,0,1).
-    expect_near(scene.objects.at(0).mesh.points.at(1), {6, 0, 1});
-    expect_near(geometry::object_poses(scene, 1.5).at(0).point({6, 0, 1}), {4, 2, 7}, 1e-6);
-    expect_near(geometry::object_poses(scene, 1.5).at(1).point({3, 0, 0}), {2, 1, 3}, 1e-6);
-    EXPECT_EQ(scene.motions.size(), 2U) << "objects placed alike share a motion";
 }
 
 TEST_F(ReadSceneTest, mesh_is_turned_only_where_its_stated_up_axis_differs) {

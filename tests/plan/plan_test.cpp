@@ -52,6 +52,37 @@ TEST(Plan, a_motion_that_goes_nowhere_is_no_motion) {
     EXPECT_EQ(room.plan().moving_objects.size(), 1u);
 }
 
+TEST(Plan, a_child_that_rests_on_a_moving_parent_moves_and_one_that_undoes_it_does_not) {
+    Room room;
+    const Quat none(1, 0, 0, 0);
+    room.scene.time = {0.0, 1.0, 3};
+    room.scene.motions = {
+        {"arm", model::Interpolation::Linear, Vec3(0), {{0.0, Vec3(0), none}, {1.0, Vec3(1), none}}},
+        {"lamp", model::Interpolation::Linear, Vec3(0), {{0.0, Vec3(0), none}}}};
+    room.scene.motions[1].parent = MotionId(0);
+    room.scene.objects[1].motion = MotionId(1);
+    EXPECT_EQ(room.plan().moving_objects, (std::vector<ObjectId>{ObjectId(1)}));
+    room.scene.motions[1].keyframes = {{0.0, Vec3(0), none}, {1.0, Vec3(-1), none}};
+    EXPECT_TRUE(room.plan().moving_objects.empty());
+    EXPECT_FALSE(effect(room.plan(), "motion").simulated);
+    EXPECT_FALSE(effect(room.plan(), "moving occlusion").simulated);
+}
+
+TEST(Plan, names_the_dimmings_that_change_over_the_frames_and_no_others) {
+    Room room;
+    room.scene.time = {0.0, 1.0, 3};
+    EXPECT_FALSE(effect(room.plan(), "dimming").simulated);
+    EXPECT_NE(effect(room.plan(), "dimming").reason.find("one solve serves all frames"), std::string::npos);
+    room.scene.dimmings = {{"evening", model::Interpolation::Linear, {{0.0, 1.0}, {1.0, 0.25}}},
+                           {"later", model::Interpolation::Linear, {{5.0, 1.0}, {6.0, 0.0}}}};
+    const auto plan = room.plan();
+    EXPECT_TRUE(effect(plan, "dimming").simulated);
+    EXPECT_NE(effect(plan, "dimming").reason.find("evening (0.25 to 1)"), std::string::npos);
+    EXPECT_EQ(effect(plan, "dimming").reason.find("later"), std::string::npos);
+    EXPECT_TRUE(plan.moving_objects.empty()) << "dimming moves nothing";
+    EXPECT_FALSE(plan.moving_occlusion);
+}
+
 TEST(Plan, the_scene_may_overrule_it_and_is_told_what_it_risks) {
     Room room;
     EXPECT_GT(room.plan().bounces, 0u);

@@ -139,6 +139,17 @@ TEST(Reference, a_moved_lamp_shines_where_it_is) {
                 4.0 * reading.standard_error[0]);
 }
 
+TEST(Reference, a_dimmed_lamp_shines_as_bright_as_it_is_at_the_time) {
+    model::Scene scene = lamp_over_floor();
+    scene.dimmings = {{"evening", model::Interpolation::Linear, {{0.0, 1.0}, {2.0, 0.0}}}};
+    scene.materials[scene.objects[1].mesh.materials[0].value].dimming = DimmingId(0);
+    const std::vector<SensorPoint> point{sensor({0.1, 0.2, 0.0}, {0, 0, 1})};
+    const SensorReading reading = trace_irradiance(scene, 0.5, point, {.paths = 1024})[0];
+    EXPECT_NEAR(reading.irradiance[0], 0.75 * lamp_irradiance({0.1, 0.2, 0.0}, {0, 0, 1}),
+                4.0 * reading.standard_error[0]);
+    EXPECT_EQ(trace_irradiance(scene, 2.0, point, {.paths = 64})[0].irradiance[0], 0.0);
+}
+
 TEST(Reference, the_bytes_do_not_depend_on_the_number_of_threads) {
     const model::Scene scene = lamp_over_floor(0.5);
     const std::vector<SensorPoint> points = floor_points(100, 3);

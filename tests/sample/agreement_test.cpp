@@ -45,7 +45,7 @@ TEST(DirectLight, agrees_with_path_tracing_in_a_cluttered_room) {
     const auto readings = reference::trace_irradiance(scene, 0.0, sensors, {.paths = 4096, .seed = 2});
     const auto shapes = support::shapes_of(room.set, 3, 0);
     const auto occluders = support::occluders_of(room.set, scene);
-    const DirectLight light(shapes, scene, occluders, {.shadow_rays = 256});
+    const DirectLight light(shapes, scene, 0.0, occluders, {.shadow_rays = 256});
     std::vector<std::vector<double>> values;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         values.emplace_back(1);

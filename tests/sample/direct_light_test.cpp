@@ -48,7 +48,7 @@ struct Lit {
           scene(lamp_scene(4)),
           shapes(support::shapes_of(set, n, 0)),
           occluders(support::occluders_of(set, scene)),
-          light(shapes, scene, occluders, options) {}
+          light(shapes, scene, 0.0, occluders, options) {}
 };
 
 TEST(DirectLight, a_square_gives_its_closed_form_however_it_is_cut) {
@@ -120,10 +120,22 @@ TEST(DirectLight, lamps_add_up_and_channels_keep_their_share) {
     Lit colour({lamp()}, 2);
     colour.scene.channels = {"r", "g"};
     colour.scene.materials[1].exitance = {5.0, 1.0};
-    const DirectLight light(colour.shapes, colour.scene, colour.occluders, {});
+    const DirectLight light(colour.shapes, colour.scene, 0.0, colour.occluders, {});
     std::array<double, 2> result{};
     light.irradiance({x, normal}, 0, result);
     EXPECT_NEAR(result[0], 5.0 * result[1], 1e-12);
+}
+
+TEST(DirectLight, a_dimmed_lamp_shines_with_its_factor_at_the_time_and_not_at_all_when_off) {
+    Lit lit({lamp()}, 2);
+    lit.scene.dimmings = {{"evening", model::Interpolation::Linear, {{0.0, 1.0}, {4.0, 0.0}}}};
+    lit.scene.materials[1].dimming = DimmingId(0);
+    const Receiver receiver{{0.1, 0.2, 0.0}, {0, 0, 1}};
+    const double full = 5.0 * kernel::point_to_polygon(receiver.position, receiver.normal, lamp_corners());
+    for (const double t : {0.0, 1.0, 3.0, 4.0}) {
+        const DirectLight light(lit.shapes, lit.scene, t, lit.occluders, {});
+        EXPECT_NEAR(at(light, receiver), (1.0 - t / 4.0) * full, 1e-12);
+    }
 }
 
 TEST(DirectLight, penumbra_error_falls_with_the_number_of_rays) {

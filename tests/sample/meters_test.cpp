@@ -20,12 +20,13 @@ std::optional<model::MeterReading> find(const std::vector<model::MeterReading>& 
 }
 
 std::vector<model::MeterReading> read(const model::PatchSet& set, const model::Scene& scene, int n,
-                                      double direct, double indirect) {
+                                      double direct, double indirect, double time_s = 0.0) {
     const auto shapes = support::shapes_of(set, n, 1);
     const auto occluders = support::occluders_of(set, scene);
     const std::vector<geometry::Pose> poses(scene.objects.size());
-    return meter_readings(shapes, scene, test::layout_of(shapes),
-                          test::uniform_frame(shapes, scene, direct, indirect), poses, occluders, {});
+    model::FrameSolution frame = test::uniform_frame(shapes, scene, direct, indirect);
+    frame.time_s = time_s;
+    return meter_readings(shapes, scene, test::layout_of(shapes), frame, poses, occluders, {});
 }
 
 TEST(Meters, object_readings_are_means_and_integrals_over_the_area) {
@@ -77,6 +78,38 @@ TEST(Meters, a_sensor_reads_lamps_in_closed_form_and_not_what_they_emit_twice) {
     const auto reading = find(read(set, scene, 2, 0.0, 4.0), "point[0,0]", "irradiance");
     ASSERT_TRUE(reading);
     EXPECT_NEAR(reading->value, 5.0 * kernel::point_to_polygon({0, 0, 0}, {0, 0, 1}, lamp), 1e-12);
+}
+
+TEST(Meters, a_grid_that_follows_a_motion_is_read_where_it_is_and_faces_as_it_is_turned) {
+    model::Scene scene = support::plain_scene(1, 0.5, 0.0);
+    scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});
+    const model::PatchSet set{
+        {support::rectangle({-0.5, -0.5, 1}, {0, 1, 0}, {1, 0, 0}, ObjectId(0), MaterialId(1))}, {}};
+    // A carriage along x that carries a joint which tilts the sensor towards y.
+    model::Motion carriage, joint;
+    carriage.keyframes = {{0.0, Vec3(0), Quat(1, 0, 0, 0)}, {1.0, Vec3(0.6, 0, 0), Quat(1, 0, 0, 0)}};
+    joint.keyframes = {{0.0, Vec3(0), Quat(1, 0, 0, 0)}, {1.0, Vec3(0), glm::angleAxis(-0.5, Vec3(1, 0, 0))}};
+    joint.parent = MotionId(0);
+    scene.motions = {carriage, joint};
+    scene.meters = {{"point", {-0.1, -0.1, 0}, {0.2, 0, 0}, {0, 0.2, 0}, 1, 1, MotionId(1)}};
+    const std::array<Vec3, 4> lamp{Vec3(-0.5, -0.5, 1), Vec3(-0.5, 0.5, 1), Vec3(0.5, 0.5, 1),
+                                   Vec3(0.5, -0.5, 1)};
+    for (const double t : {0.0, 0.5, 1.0}) {
+        const auto reading = find(read(set, scene, 2, 0.0, 4.0, t), "point[0,0]", "irradiance");
+        ASSERT_TRUE(reading);
+        const Vec3 normal(0.0, std::sin(0.5 * t), std::cos(0.5 * t));
+        EXPECT_NEAR(reading->value, 5.0 * kernel::point_to_polygon({0.6 * t, 0, 0}, normal, lamp), 1e-12);
+    }
+}
+
+TEST(Meters, emitted_flux_is_what_the_dimmed_lamp_emits) {
+    model::Scene scene = support::plain_scene(1, 0.5, 2.0);
+    scene.dimmings = {{"d", model::Interpolation::Linear, {{0.0, 1.0}, {1.0, 0.5}}}};
+    scene.materials[0].dimming = DimmingId(0);
+    const model::PatchSet set{support::box({0, 0, 0}, {1, 1, 1}, support::Facing::Inwards), {}};
+    for (const double t : {0.0, 0.5, 1.0})
+        EXPECT_NEAR(find(read(set, scene, 1, 1.0, 1.0, t), "object0", "emitted flux")->value,
+                    12.0 * (1.0 - 0.5 * t), 1e-12);
 }
 
 TEST(Meters, a_screen_between_wall_and_sensor_hides_the_wall) {

@@ -143,6 +143,48 @@ TEST(Animation, taken_up_again_gives_the_same_frames_and_leads_engines_with_a_me
     }
 }
 
+/// Counts how often blocks are asked for.
+struct CountingEngine : motion::Engine {
+    int advances = 0;
+    motion::FrameBlocks advance(double, std::span<const geometry::Pose>) override {
+        ++advances;
+        return {};
+    }
+};
+
+TEST(Animation, dimmed_lamps_over_bodies_at_rest_scale_the_light_and_recompute_no_block) {
+    Room room;
+    room.scene.time = {0.0, 4.0, 5};
+    room.scene.dimmings = {{"evening",
+                            model::Interpolation::Linear,
+                            {{0.0, 1.0}, {1.0, 0.5}, {2.0, 0.5}, {3.0, 0.0}, {4.0, 2.0}}}};
+    room.scene.materials[1].dimming = DimmingId(0);
+    const auto shapes = geometry::element_shapes(room.patches, room.tree, room.plan.degree, 0);
+    const visibility::Occluders occluders(visibility::bodies_of(room.patches, room.scene));
+    const auto blocks = coefficients::compute_coefficients(shapes, room.scene, room.plan, occluders, {}, 1e6);
+    std::vector<double> areas;
+    areas.reserve(shapes.size());
+    for (const auto& shape : shapes) areas.push_back(shape.area);
+    for (const std::uint32_t bounces : {10u, 0u}) {
+        room.plan.bounces = bounces;
+        CountingEngine engine;
+        const std::vector<std::uint32_t> all{0, 1, 2, 3, 4};
+        const auto frames = solve::solve_animation({room.scene, room.plan, blocks, room.tree.elements, areas},
+                                                   engine, all, {.tolerance = 1e-10}, [](const auto&) {})
+                                .frames;
+        EXPECT_EQ(engine.advances, 1);
+        EXPECT_GT(frames[1].sweeps, 0.0);
+        EXPECT_EQ(frames[2].sweeps, 0.0) << "the lamp has not changed since the frame before";
+        const std::vector<double> factors{1.0, 0.5, 0.5, 0.0, 2.0};
+        for (std::size_t f = 0; f < factors.size(); ++f) {
+            EXPECT_EQ(frames[f].blocks_recomputed, 0u);
+            for (std::size_t k = 0; k < frames[0].radiosity.size(); ++k)
+                ASSERT_NEAR(frames[f].radiosity[k], factors[f] * frames[0].radiosity[k], 1e-8)
+                    << "frame " << f;
+        }
+    }
+}
+
 TEST(BlocksAt, frame_blocks_take_the_place_of_static_ones_and_missing_ones_are_zero) {
     const model::BlockSet fixed{.entries = {{0, 1, 0, 0.1f}, {0, 2, 1, 0.2f}, {1, 2, 2, 0.3f}},
                                 .values = {1.0f, 2.0f, 3.0f}};

@@ -79,6 +79,7 @@ mesh = "room.obj"
 group = "lamp"
 material = "source"
 exitance = [10.0, 5.0]
+{lamp}
 {more}
 """
 
@@ -94,7 +95,8 @@ translation = [0.3, 0.0, 0.0]
 """
 
 
-def write_room(folder, moving=False, target="10%", more="", block_motion=None, frames=None, quantity="radiometric"):
+def write_room(folder, moving=False, target="10%", more="", block_motion=None, frames=None, quantity="radiometric",
+               lamp_more="", end_s=None):
     """A closed room of 2 m x 2 m x 2 m with a floating block and a lamp below its ceiling. @return  its scene file"""
     folder = pathlib.Path(folder)
     obj = Obj().group("room", *box_faces((0, 0, 0), (2, 2, 2), True))
@@ -103,8 +105,77 @@ def write_room(folder, moving=False, target="10%", more="", block_motion=None, f
     obj.write(folder / "room.obj")
     if block_motion is None:
         block_motion = 'motion = "glide"' if moving else ""
-    text = ROOM.format(target=target, end_s=1.0 if moving else 0.0, frames=frames or (3 if moving else 1),
+    end_s = end_s or (1.0 if moving else 0.0)
+    text = ROOM.format(target=target, end_s=end_s, frames=frames or (3 if moving else 1), lamp=lamp_more,
                        block_motion=block_motion, quantity=quantity, more=(MOTION if moving else "") + more)
     scene = folder / "room.toml"
     scene.write_text(text, encoding="utf-8")
+    return scene
+
+
+ARM = """format = 1
+[scene]
+title = "lamp on an arm"
+channels = ["grey"]
+[accuracy]
+target = "3%"
+element_size = 0.34
+[time]
+start_s = {start_s}
+end_s = {end_s}
+frames = {frames}
+[[material]]
+name = "wall"
+reflectance = 0.5
+[[object]]
+name = "room"
+mesh = "arm.obj"
+group = "room"
+material = "wall"
+[[object]]
+name = "shield"
+mesh = "arm.obj"
+group = "shield"
+material = "wall"
+motion = "hold"
+[[object]]
+name = "lamp"
+mesh = "arm.obj"
+group = "lamp"
+material = "wall"
+sides = "front"
+exitance = 100
+motion = "nod"
+[[motion]]
+name = "nod"
+parent = "arm"
+pivot = [1.5, 1.0, 1.4]
+keyframe = [{{time_s = 0}}, {{time_s = 2, rotation_axis = [0, 1, 0], rotation_deg = 20}}]
+[[motion]]
+name = "hold"
+parent = "arm"
+keyframe = [{{time_s = 0, translation = [0, 0, 0.05]}}]
+[[motion]]
+name = "arm"
+pivot = [1.0, 1.0, 0.0]
+keyframe = [{{time_s = 0}}, {{time_s = 2, rotation_axis = [0, 0, 1], rotation_deg = 270}}]
+[[meter]]
+name = "below"
+origin = [1.45, 0.95, 0.9]
+edge_u = [0.1, 0, 0]
+edge_v = [0, 0.1, 0]
+motion = "arm"
+"""
+
+
+def write_arm(folder, frames, start_s=0.0, name="arm"):
+    """A lamp that faces down, nods and is carried round by an arm, with a shield over it that the arm holds, in a closed
+    room; a meter hangs below. Three quarters of a turn from 0 s to 2 s. @return  its scene file"""
+    folder = pathlib.Path(folder)
+    obj = Obj().group("room", *box_faces((0, 0, 0), (2, 2, 2), True))
+    obj.group("shield", *box_faces((1.3, 0.8, 1.45), (1.7, 1.2, 1.5), False))
+    obj.group("lamp", *lamp((1.4, 0.9), (1.6, 1.1), 1.4))
+    obj.write(folder / "arm.obj")
+    scene = folder / f"{name}.toml"
+    scene.write_text(ARM.format(start_s=start_s, end_s=2.0 if frames > 1 else start_s, frames=frames), encoding="utf-8")
     return scene

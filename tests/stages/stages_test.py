@@ -392,6 +392,52 @@ class MovingScene(StageTest):
         self.assertTrue(all(f["converged"] for f in found))
         self.assert_fails(2, r"shooting needs the blocks of all pairs", "kinelux-solve", "case", "--method", "shooting")
 
+    def readings(self, case, quantity="irradiance"):
+        """{(frame, meter, channel): value} of a quantity."""
+        with (self.folder / case / "meters.csv").open(encoding="utf-8", newline="") as file:
+            return {(int(row["frame"]), row["meter"], row["channel"]): float(row["value"])
+                    for row in csv.DictReader(file) if row["quantity"] == quantity}
+
+    def frames_of(self, case):
+        return json.loads((self.folder / case / "solve.json").read_text(encoding="utf-8"))["frames"]
+
+    def test_a_lamp_on_an_arm_and_a_meter_on_it_read_as_in_a_scene_built_at_each_pose(self):
+        scene = scenes.write_arm(self.folder, frames=3)
+        self.run_ok("kinelux", "run", scene, "-o", "moving")
+        moving = self.readings("moving")
+        self.assertGreater(self.frames_of("moving")[1]["blocks_recomputed"], 0)
+        for frame, time_s in enumerate((0.0, 1.0, 2.0)):
+            still = scenes.write_arm(self.folder, frames=1, start_s=time_s, name="still")
+            self.run_ok("kinelux", "run", still, "-o", f"still{frame}")
+            self.assertEqual(self.frames_of(f"still{frame}")[0]["blocks_recomputed"], 0)
+            counts = json.loads((self.folder / f"still{frame}/coefficients.json").read_text(encoding="utf-8"))["counts"]
+            self.assertEqual((counts["moving_pairs"], counts["crossed_pairs"]), (0, 0))
+            for (_, meter, channel), value in self.readings(f"still{frame}").items():
+                self.assertAlmostEqual(moving[frame, meter, channel] / value, 1.0, delta=0.01,
+                                       msg=f"frame {frame}, {meter}, {channel}")
+
+    def test_a_lamp_on_an_arm_agrees_with_the_path_tracer(self):
+        scene = scenes.write_arm(self.folder, frames=3)
+        self.run_ok("kinelux", "run", scene, "-o", "case")
+        self.call("kinelux-reference", "case", "--frames", "2", "--points", "200", "--paths", "4096")
+        report = json.loads((self.folder / "case/reference.json").read_text(encoding="utf-8"))
+        self.assertLess(report["relative_rms_difference"], 0.04)
+
+    def test_a_dimmed_lamp_scales_all_light_and_recomputes_nothing(self):
+        dimming = '[[dimming]]\nname = "evening"\nkeyframe = [{time_s = 0, factor = 1}, {time_s = 2, factor = 0}]\n'
+        scene = scenes.write_room(self.folder, frames=3, end_s=2.0, more=dimming, lamp_more='dimming = "evening"')
+        self.run_ok("kinelux", "run", scene, "-o", "case")
+        readings = self.readings("case")
+        for (frame, meter, channel), value in readings.items():
+            self.assertAlmostEqual(value, (1.0, 0.5, 0.0)[frame] * readings[0, meter, channel],
+                                   delta=1e-3 * readings[0, meter, channel], msg=f"{frame} {meter} {channel}")
+        self.assertEqual([f["blocks_recomputed"] for f in self.frames_of("case")], [0, 0, 0])
+        effects = json.loads((self.folder / "case/plan.json").read_text(encoding="utf-8"))["effects"]
+        self.assertIn("evening (0 to 1)", {e["name"]: e["reason"] for e in effects}["dimming"])
+        self.call("kinelux-reference", "case", "--frames", "1", "--points", "200", "--paths", "4096")
+        report = json.loads((self.folder / "case/reference.json").read_text(encoding="utf-8"))
+        self.assertLess(report["relative_rms_difference"], 0.1)
+
     def test_energy_that_arrives_is_energy_that_leaves(self):
         scene = scenes.write_room(self.folder, moving=True, target="5%")
         self.run_ok("kinelux", "run", scene, "-o", "case")
