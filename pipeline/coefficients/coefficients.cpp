@@ -16,6 +16,8 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "geometry/pose.h"
+#include "visibility/pair_blockers.h"
+#include "visibility/polygon_blockers.h"
 
 namespace kinelux::coefficients {
 
@@ -66,6 +68,58 @@ std::vector<Ball> swept_balls(std::span<const ElementShape> elements, const mode
     return result;
 }
 
+struct Box {
+    Vec3 low{std::numeric_limits<double>::infinity()};
+    Vec3 high{-std::numeric_limits<double>::infinity()};
+
+    void add(const Vec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    // Whether more than the surfaces meet.
+    bool meets(const Vec3& other_low, const Vec3& other_high) const {
+        constexpr double touch = 1e-9; // of the size
+        const double slack = touch * glm::length(high - low);
+        return glm::all(glm::lessThan(low + slack, other_high)) &&
+               glm::all(glm::lessThan(other_low, high - slack));
+    }
+};
+
+Box posed_box(const ElementShape& element, const geometry::Pose& pose) {
+    Box box;
+    for (int corner = 0; corner < 8; ++corner)
+        box.add(pose.point({(corner & 1) != 0 ? element.box_high.x : element.box_low.x,
+                            (corner & 2) != 0 ? element.box_high.y : element.box_low.y,
+                            (corner & 4) != 0 ? element.box_high.z : element.box_low.z}));
+    return box;
+}
+
+// Per motion whether in some frame anything that it does not carry reaches into the box of all that it does.
+std::vector<std::uint8_t> meetings(std::span<const ElementShape> elements, const model::Scene& scene,
+                                   const model::Plan& plan,
+                                   const std::vector<std::optional<MotionId>>& carriers) {
+    std::vector<std::uint8_t> result(scene.motions.size(), 0);
+    if (plan.moving_objects.empty()) return result;
+    for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame) {
+        const auto poses = geometry::object_poses(scene, scene.time.time_of_frame(frame));
+        std::vector<Box> carried(scene.motions.size());
+        for (const ElementShape& element : elements)
+            if (const auto& carrier = carriers[element.object.value]) {
+                const Box box = posed_box(element, poses[element.object.value]);
+                carried[carrier->value].add(box.low);
+                carried[carrier->value].add(box.high);
+            }
+        for (const ElementShape& element : elements) {
+            const auto& own = carriers[element.object.value];
+            const Box box = own ? posed_box(element, poses[element.object.value])
+                                : Box{element.box_low, element.box_high};
+            for (std::size_t m = 0; m < carried.size(); ++m)
+                if (!(own && own->value == m) && carried[m].meets(box.low, box.high)) result[m] = 1;
+        }
+    }
+    return result;
+}
+
 struct Row {
     std::vector<model::BlockEntry> entries;
     std::vector<float> values;
@@ -80,6 +134,8 @@ public:
                const visibility::Occluders& occluders, const kernel::TransportOptions& options)
         : elements_(elements), occluders_(occluders), options_(options), carriers_(carriers(scene, plan)) {
         if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
+        if (options.occlusion) meetings_ = meetings(elements, scene, plan, carriers_);
+        for (const ElementShape& element : elements) ends_.push_back(visibility::shaft_end(element));
     }
 
     bool at_rest(std::size_t i, std::size_t j) const {
@@ -107,7 +163,10 @@ public:
                 continue;
             }
             ++row.examined;
-            add_static_block(pair, row);
+            if (rides(i) && strangers_between(pair))
+                row.moving.push_back(pair); // nothing that would stand is known of it
+            else
+                add_static_block(pair, row);
         }
         return row;
     }
@@ -130,6 +189,19 @@ private:
         return result;
     }
 
+    // Whether at rest a moving body stands in a pair of another carrier: blocks of riding pairs see all that move.
+    bool strangers_between(const ElementPair& pair) const {
+        if (!options_.occlusion || !kernel::may_exchange(elements_[pair.i], elements_[pair.j])) return false;
+        const auto& own = carriers_[elements_[pair.i].object.value];
+        std::vector<std::uint8_t> counts;
+        counts.reserve(carriers_.size());
+        for (const auto& carrier : carriers_) counts.push_back(carrier && carrier != own ? 1 : 0);
+        if (std::find(counts.begin(), counts.end(), 1) == counts.end()) return false;
+        thread_local visibility::PairBlockers blockers;
+        return blockers.any_between(ends_[pair.i], ends_[pair.j], occluders_.polygons(),
+                                    visibility::Among::Moving, counts);
+    }
+
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
@@ -141,7 +213,12 @@ private:
         if (block.values.empty()) return;
         row.entries.push_back({pair.i, pair.j, row.values.size(), static_cast<float>(block.error)});
         for (const double value : block.values) row.values.push_back(static_cast<float>(value));
-        if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
+        if (rides) {
+            if (!meetings_.empty() && meetings_[carriers_[a.object.value]->value] != 0)
+                row.crossed.push_back(pair);
+            return;
+        }
+        if (std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
                 return geometry::may_pass_between(a, b, mover.centre, mover.radius);
             }))
             row.crossed.push_back(pair);
@@ -152,6 +229,8 @@ private:
     kernel::TransportOptions options_;
     std::vector<std::optional<MotionId>> carriers_;
     std::vector<Ball> movers_;
+    std::vector<std::uint8_t> meetings_;     ///< per motion: whether others come near what it carries
+    std::vector<visibility::ShaftEnd> ends_; ///< per element
     bool grouped_ = false;
     std::vector<ElementPair> near_;
     std::vector<std::uint32_t> riding_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,6 +29,9 @@ public:
     /// @param time_s  of the frame [s]
     /// @param poses   world_from_rest, one per object of the scene
     virtual FrameBlocks advance(double time_s, std::span<const geometry::Pose> poses) = 0;
+
+    virtual std::size_t bytes() const { return 0; }      ///< held for blocks at other times [B]
+    virtual std::uint64_t prepared() const { return 0; } ///< blocks integrated before the first frame
 };
 
 } // namespace kinelux::motion

@@ -223,6 +223,45 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     return result;
 }
 
+motion::Importance importance_of(const Animation& animation, motion::Engine& engine,
+                                 std::span<const std::uint32_t> frames) {
+    constexpr double coarse = 1e-2;
+    const Light light = light_of(animation);
+    const auto& layout = animation.coefficients.layout;
+    motion::Importance result;
+    double reflected = 0.0, area = 0.0;
+    for (std::size_t e = 0; e < layout.elements(); ++e) {
+        const auto rho = std::span(light.reflectance).subspan(e * light.channels, light.channels);
+        result.reflectance.push_back(*std::max_element(rho.begin(), rho.end()));
+        reflected += result.reflectance.back() * animation.areas[e];
+        area += animation.areas[e];
+    }
+    result.bounces = 1.0 / (1.0 - reflected / area);
+    result.radiosity.assign(layout.elements(), 0.0);
+    BlockOperator blocks(layout, animation.coefficients.static_blocks);
+    const LinkedOperator linked(blocks, animation.coefficients.hierarchy);
+    const TransportOperator& transport =
+        animation.coefficients.hierarchy.empty() ? static_cast<const TransportOperator&>(blocks) : linked;
+    for (const std::uint32_t number : frames) {
+        const double time_s = animation.scene.time.time_of_frame(number);
+        const auto changed = engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
+        blocks.replace(changed.pairs, changed.blocks);
+        const SystemSolution solved =
+            solve_system({transport, light.channels, light.exitance, light.reflectance, animation.areas},
+                         {.tolerance = coarse}, {});
+        double size = 0.0;
+        for (std::size_t e = 0; e < layout.elements(); ++e) {
+            const double own = square_sum(
+                std::span(solved.radiosity)
+                    .subspan(layout.offsets[e] * light.channels, layout.count(e) * light.channels));
+            result.radiosity[e] = std::max(result.radiosity[e], std::sqrt(own));
+            size += light.emits[e] ? 0.0 : own;
+        }
+        result.size = number == frames.front() ? std::sqrt(size) : std::min(result.size, std::sqrt(size));
+    }
+    return result;
+}
+
 model::Solution solve_animation(const Animation& animation, motion::Engine& engine,
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
                                 const std::function<void(const FrameSolution&)>& progress) {
@@ -260,6 +299,7 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
         frame.frame = number;
         frame.time_s = time_s;
         frame.blocks_recomputed = static_cast<std::uint32_t>(changed.computed);
+        frame.blocks_changing = static_cast<std::uint32_t>(changed.pairs.size());
         frame.element_error =
             irradiance_errors(coefficients.layout, entries_at(coefficients.static_blocks, changed),
                               animation.areas, light.exitance, frame, light.channels, coefficients.hierarchy);
