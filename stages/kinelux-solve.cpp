@@ -7,8 +7,8 @@
 
 #include "cli/stage.h"
 #include "core/log.h"
+#include "engines.h"
 #include "light_case.h"
-#include "motion/exact_engine.h"
 #include "reports.h"
 #include "solve/animation.h"
 
@@ -20,6 +20,7 @@ struct Options {
     std::string method = "gauss-seidel";
     std::optional<double> tolerance;
     std::uint32_t max_sweeps = solve::SolveOptions{}.max_sweeps;
+    std::string engine = "auto";
 
     explicit Options(cli::OptionTable& table) {
         table.add(
@@ -40,6 +41,7 @@ struct Options {
                    .help = "of the solver per frame",
                    .low = 1,
                    .high = 1e9});
+        table.add(stages::engine_row(engine));
     }
     solve::SolveOptions for_target(double target) const {
         return {.method = method == "shooting"              ? solve::Method::Shooting
@@ -66,8 +68,9 @@ int main(int argc, char** argv) {
             stage.step("read coefficients", [&] { return stage.folder().read_coefficients(); });
         const std::vector<double> areas = light.areas();
         const auto frames = stages::frames_of(light.scene, range);
-        motion::ExactEngine engine(blocks, light.elements, light.plan, light.occluders,
-                                   light.transport_options(seed));
+        const stages::NamedEngine engine = stage.step("prepare motion", [&] {
+            return stages::make_engine(options.engine, light, blocks, areas, frames, seed);
+        });
         core::Progress progress("solve", frames.size());
         const auto show = [&](const model::FrameSolution& frame) {
             cli::Stage::throw_if_stopped();
@@ -76,10 +79,11 @@ int main(int argc, char** argv) {
         };
         const model::Solution solution = stage.step("solve", [&] {
             return solve::solve_animation({light.scene, light.plan, blocks, light.tree.elements, areas},
-                                          engine, frames, options.for_target(light.scene.accuracy.target),
-                                          show);
+                                          *engine.engine, frames,
+                                          options.for_target(light.scene.accuracy.target), show);
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });
+        stages::report_engine(engine, stage);
         return stages::report_solution(solution, light.scene.accuracy.target, stage);
     });
 }

@@ -55,7 +55,7 @@ std::vector<std::uint32_t> BlockPath::frames_of(const Span& span) {
         for (std::uint32_t f = span.first; f <= span.last; ++f) frames.push_back(f);
         return frames;
     }
-    if (span.change == Change::Clear) return lobatto(span.first, span.last, 2u << span.level);
+    if (span.change != Change::Shaded) return lobatto(span.first, span.last, 2u << span.level);
     const std::uint32_t middle = (span.first + span.last) / 2;
     if (span.level == 0) return {span.first, middle, span.last};
     return {span.first, (span.first + middle) / 2, middle, (middle + span.last) / 2, span.last};
@@ -216,7 +216,7 @@ void BlockPath::judge(double tolerance) {
             scatter = std::max(scatter, static_cast<double>(find(frame)->error));
         constexpr double heard = 0.5, most = 3.0;
         const double allowed = std::max(tolerance, std::min(heard * scatter, most * tolerance));
-        span.change == Change::Clear ? judge_clear(span, allowed) : judge_shaded(span, allowed);
+        span.change == Change::Shaded ? judge_shaded(span, allowed) : judge_clear(span, allowed);
     }
     if (!finished()) return;
     std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {

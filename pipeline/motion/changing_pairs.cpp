@@ -100,12 +100,17 @@ bool ChangingPairs::mover_near(const ElementPair& pair) const {
     });
 }
 
+Change ChangingPairs::unshaded(const ElementPair& pair) const {
+    return kernel::cut_by_horizon((*elements_)[pair.i], (*elements_)[pair.j]) ? Change::Horizon
+                                                                              : Change::Clear;
+}
+
 Change ChangingPairs::change(std::size_t k) const {
     const ElementPair& pair = pairs_[k];
     if (kinds_[k] == Kind::Resting && !mover_near(pair)) return Change::None;
     if (kinds_[k] == Kind::Moving) {
         if (!kernel::may_exchange((*elements_)[pair.i], (*elements_)[pair.j])) return Change::Zero;
-        if (!options_.occlusion || occluders_.empty()) return Change::Clear;
+        if (!options_.occlusion || occluders_.empty()) return unshaded(pair);
     }
     thread_local visibility::PairBlockers blockers;
     const Among among = kinds_[k] == Kind::Resting ? Among::Moving : options_.occluders;
@@ -115,13 +120,13 @@ Change ChangingPairs::change(std::size_t k) const {
     const bool between =
         blockers.any_between(ends_[pair.i], ends_[pair.j], occluders_.polygons(), among, counts);
     if (between) return Change::Shaded;
-    return kinds_[k] == Kind::Moving ? Change::Clear : Change::None;
+    return kinds_[k] == Kind::Moving ? unshaded(pair) : Change::None;
 }
 
 kernel::TransportBlock ChangingPairs::block(std::size_t k, Change change) const {
     if (change == Change::Zero) return {};
     kernel::TransportOptions options = options_;
-    if (change == Change::Clear) options.occlusion = false;
+    if (change == Change::Clear || change == Change::Horizon) options.occlusion = false;
     return kernel::transport((*elements_)[pairs_[k].i], (*elements_)[pairs_[k].j], occluders_, options);
 }
 

@@ -19,9 +19,10 @@ namespace kinelux::motion {
 
 /// What is known of a pair's block at one time without integrating it.
 enum class Change : std::uint8_t {
-    None,  ///< the static block holds, or there is none
-    Zero,  ///< the elements face away from each other
-    Clear, ///< in relative motion, nothing stands between
+    None,    ///< the static block holds, or there is none
+    Zero,    ///< the elements face away from each other
+    Clear,   ///< in relative motion, nothing stands between
+    Horizon, ///< the same, and the plane of one cuts the other
     Shaded ///< something that moves relative to one of both may hide a part: its polygon reaches into the shaft
 };
 
@@ -65,6 +66,7 @@ private:
     void find_others();
     void bound_movers();
     bool moves(std::size_t element) const { return moving_[rest_[element].object.value] != 0; }
+    Change unshaded(const model::ElementPair& pair) const;
     bool mover_near(const model::ElementPair& pair) const;
 
     const model::Coefficients& coefficients_;

@@ -13,9 +13,13 @@ namespace {
 
 constexpr std::uint64_t longest_shaded = 3; ///< frames from one integration to the next where V may vary
 constexpr std::uint64_t longest_clear = 16; ///< the same where nothing stands between
+constexpr double better_than_asked =
+    3.0;                       ///< most blocks in most frames; with 3 the light is off by half the tolerance
 constexpr double safety = 2.0; ///< of a measured error, for what it grows to until the next measurement
 constexpr double memory_of_error = 0.3; ///< a larger error measured before still counts by this much
-constexpr double nothing = 0.3;         ///< of the tolerance: blocks below it may be continued as they like
+constexpr double bends =
+    0.25; ///< of the change per frame: what an edge of a shadow or a horizon may take with it
+constexpr double nothing = 0.3; ///< of the tolerance: blocks below it may be continued as they like
 
 double frobenius(std::span<const double> values) {
     double sum = 0.0;
@@ -81,6 +85,14 @@ void OnlineEngine::integrate(std::size_t k, double time_s, Memory& memory, Slot&
         memory.third = memory.measured ? std::max(third, memory_of_error * memory.third) : third;
         memory.measured = true;
     }
+    if (memory.known > 0) {
+        double change = 0.0;
+        for (std::size_t v = 0; v < size; ++v) {
+            const double difference = block.values[v] - static_cast<double>(memory.values[v]);
+            change += difference * difference;
+        }
+        memory.rate = std::max(memory.rate, std::sqrt(change) / static_cast<double>(frame_ - memory.frame));
+    }
     memory.gap = memory.known > 0 ? frame_ - memory.frame : 1;
     memory.values.resize(std::min<std::size_t>(memory.known + 1u, most_known) * size);
     std::copy_backward(memory.values.begin(), memory.values.end() - static_cast<std::ptrdiff_t>(size),
@@ -114,16 +126,21 @@ OnlineEngine::Slot OnlineEngine::look(std::size_t k, double time_s, const ErrorB
     const double allowed = budget.of(i, j);
     const std::uint64_t longest =
         std::min(change == Change::Shaded ? longest_shaded : longest_clear, 2 * memory.gap + 1);
-    if (memory.known > 0 && frame_ - memory.frame < longest) {
-        if (memory.norm <= nothing * allowed) {
+    const std::uint64_t since = frame_ - memory.frame;
+    if (memory.known > 1 && since < longest) {
+        const double drift = memory.rate * static_cast<double>(since);
+        if (memory.norm + 2.0 * drift <= nothing * allowed) {
             slot.values.assign(memory.values.begin(),
                                memory.values.begin() + static_cast<std::ptrdiff_t>(size));
             slot.error = static_cast<double>(memory.error) + nothing * allowed;
             return slot;
         }
-        if (memory.measured && expected_error(memory, time_s) <= allowed) {
+        // The edge of a shadow may come after any number of frames in which nothing changed.
+        const double bend = change == Change::Clear ? 0.0 : bends * drift;
+        const double expected = std::max(expected_error(memory, time_s), bend);
+        if (memory.measured && expected <= allowed) {
             slot.values = continued(memory, time_s, size);
-            slot.error = static_cast<double>(memory.error) + expected_error(memory, time_s);
+            slot.error = static_cast<double>(memory.error) + expected;
             return slot;
         }
     }
@@ -140,7 +157,7 @@ FrameBlocks OnlineEngine::advance(double time_s, std::span<const geometry::Pose>
     time_s_ = time_s;
     tracks_.follow(frame_, time_s, poses);
     changing_.set_poses(poses);
-    const ErrorBudget budget(importance_, tolerance_, changing_before_);
+    const ErrorBudget budget(importance_, tolerance_, changing_before_, better_than_asked);
     std::vector<Slot> slots(memories_.size());
     core::parallel_for(slots.size(), [&](std::size_t k) { slots[k] = look(k, time_s, budget); });
 

@@ -47,7 +47,8 @@ private:
         std::uint64_t frame = 0;                  ///< of the newest
         std::uint64_t gap = 1;                    ///< frames between the last two
         double third = 0.0;        ///< error of continuing per product of time differences [1/s3]
-        double norm = 0.0;         ///< largest of them
+        double norm = 0.0;         ///< of the newest
+        double rate = 0.0;         ///< largest difference of two successive ones per frame
         float error = 0.0f;        ///< of integration, the largest of them
         std::vector<float> values; ///< of the blocks, newest first
     };
