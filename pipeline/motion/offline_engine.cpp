@@ -45,7 +45,8 @@ OfflineEngine::OfflineEngine(const model::Coefficients& coefficients,
         throw core::OptionError("the path of an animation needs frames, each with a time and poses");
     ChangingPairs changing(coefficients, rest_elements, plan, occluders, options);
     if (changing.pairs().empty()) return;
-    find_runs(changing, path, rest_elements);
+    BodyTracks tracks(rest_elements, plan);
+    find_runs(changing, tracks, path, rest_elements);
     const ErrorBudget budget(importance, tolerance, most_at_once_, better_than_asked);
     while (std::any_of(paths_.begin(), paths_.end(), [](const BlockPath& p) { return !p.finished(); })) {
         integrate(changing, path);
@@ -58,36 +59,44 @@ OfflineEngine::OfflineEngine(const model::Coefficients& coefficients,
     visits_ = {};
 }
 
-// Frame by frame what is known of all pairs without integrating: runs of frames through which that stays the same.
-void OfflineEngine::find_runs(ChangingPairs& changing, const PosePath& path,
+// Norm of the static block, which nothing that comes between makes larger; infinite where there is none.
+double OfflineEngine::bound_of(const model::ElementPair& pair, std::size_t size) const {
+    const model::BlockEntry* entry = entry_of(coefficients_.static_blocks, pair);
+    if (entry == nullptr) return INFINITY;
+    double square = 0.0;
+    for (std::size_t v = 0; v < size; ++v) {
+        const auto value = static_cast<double>(coefficients_.static_blocks.values[entry->offset + v]);
+        square += value * value;
+    }
+    return std::sqrt(square);
+}
+
+// Frame by frame what is known of all pairs without integrating: runs of frames through which that stays the same and
+// bodies go smoothly. Where one leaves its path between two frames, the run is parted at the first of both.
+void OfflineEngine::find_runs(ChangingPairs& changing, BodyTracks& tracks, const PosePath& path,
                               std::span<const geometry::ElementShape> rest) {
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     const std::span<const model::ElementPair> pairs = changing.pairs();
     std::vector<std::uint32_t> path_of(pairs.size(), none), since(pairs.size(), 0);
     std::vector<Change> before(pairs.size(), Change::None), now(pairs.size(), Change::None);
     std::vector<std::pair<std::size_t, BlockPath>> found;
-    const auto close = [&](std::size_t k, std::uint32_t end) {
-        if (!has_block(before[k])) return;
+    const auto close = [&](std::size_t k, std::uint32_t last) {
         if (path_of[k] == none) {
-            const auto [i, j] = pairs[k];
-            double bound = INFINITY;
-            if (const auto* entry = entry_of(coefficients_.static_blocks, pairs[k])) {
-                bound = 0.0;
-                for (std::size_t v = 0; v < rest[i].basis.size() * rest[j].basis.size(); ++v) {
-                    const auto value =
-                        static_cast<double>(coefficients_.static_blocks.values[entry->offset + v]);
-                    bound += value * value;
-                }
-                bound = std::sqrt(bound);
-            }
+            const std::size_t size = rest[pairs[k].i].basis.size() * rest[pairs[k].j].basis.size();
             path_of[k] = static_cast<std::uint32_t>(found.size());
-            found.emplace_back(k, BlockPath(rest[i].basis.size() * rest[j].basis.size(), bound));
+            found.emplace_back(k, BlockPath(size, bound_of(pairs[k], size)));
         }
-        found[path_of[k]].second.add_run(before[k], since[k], end - 1);
+        found[path_of[k]].second.add_run(before[k], since[k], last);
+    };
+    const auto off_path = [&](std::size_t k) {
+        return now[k] == Change::Shaded
+                   ? tracks.any_jumped()
+                   : tracks.jumped(rest[pairs[k].i].object) || tracks.jumped(rest[pairs[k].j].object);
     };
     const auto frames = static_cast<std::uint32_t>(path.poses.size());
     for (std::uint32_t frame = 0; frame <= frames; ++frame) {
         if (frame < frames) {
+            tracks.follow(frame + 1, path.times_s[frame], path.poses[frame]);
             changing.set_poses(path.poses[frame]);
             core::parallel_for(pairs.size(), [&](std::size_t k) { now[k] = changing.change(k); });
         } else {
@@ -96,10 +105,14 @@ void OfflineEngine::find_runs(ChangingPairs& changing, const PosePath& path,
         std::size_t at_once = 0;
         for (std::size_t k = 0; k < pairs.size(); ++k) {
             at_once += has_block(now[k]) ? 1 : 0;
-            if (now[k] == before[k]) continue;
-            close(k, frame);
-            before[k] = now[k];
-            since[k] = frame;
+            if (now[k] != before[k]) {
+                if (has_block(before[k])) close(k, frame - 1);
+                before[k] = now[k];
+                since[k] = frame;
+            } else if (has_block(now[k]) && since[k] + 1 < frame && off_path(k)) {
+                close(k, frame - 1);
+                since[k] = frame - 1;
+            }
         }
         most_at_once_ = std::max(most_at_once_, at_once);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "motion/block_path.h"
+#include "motion/body_tracks.h"
 #include "motion/changing_pairs.h"
 #include "motion/engine.h"
 #include "motion/importance.h"
@@ -40,11 +41,10 @@ public:
 
 private:
     struct Slot;
-    void find_runs(ChangingPairs& changing, const PosePath& path,
+    void find_runs(ChangingPairs& changing, BodyTracks& tracks, const PosePath& path,
                    std::span<const geometry::ElementShape> rest);
+    double bound_of(const model::ElementPair& pair, std::size_t size) const;
     void integrate(ChangingPairs& changing, const PosePath& path);
-    void integrate_frame(ChangingPairs& changing, std::span<const geometry::Pose> poses, std::uint32_t frame,
-                         std::span<const std::uint32_t> tasks);
     double position_of(double time_s) const;
     void add_static(const model::ElementPair& pair, double weight, Slot& slot) const;
     Slot slot_at(std::size_t path, double position) const;
