@@ -23,13 +23,13 @@ FrameBlocks ExactEngine::advance(double /*time_s*/, std::span<const geometry::Po
     std::vector<Slot> slots(pairs.size());
     core::parallel_for(pairs.size(), [&](std::size_t k) {
         const Change change = changing_.change(k);
-        if (change == Change::None) return;
+        if (change == Change::None || change == Change::Zero) return; // no static block either
         slots[k] = {change, changing_.block(k, change)};
     });
     for (std::size_t k = 0; k < slots.size(); ++k) {
         if (slots[k].change == Change::None) continue;
         result.pairs.push_back(pairs[k]);
-        if (slots[k].change != Change::Zero) ++result.computed;
+        ++result.computed;
         const kernel::TransportBlock& block = slots[k].block;
         result.rays += block.rays;
         if (block.values.empty()) continue;

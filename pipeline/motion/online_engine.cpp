@@ -111,18 +111,18 @@ OnlineEngine::Slot OnlineEngine::look(std::size_t k, double time_s, const ErrorB
     Memory& memory = memories_[k];
     const Change change = changing_.change(k);
     Slot slot{.change = change};
+    const std::size_t size = rest_[i].basis.size() * rest_[j].basis.size();
+    if (change == memory.change && unmoved(k, memory)) {
+        slot.values.assign(memory.values.begin(), memory.values.begin() + static_cast<std::ptrdiff_t>(size));
+        slot.error = static_cast<double>(memory.error);
+        return slot;
+    }
     const bool off = change == Change::Shaded
                          ? tracks_.any_jumped()
                          : tracks_.jumped(rest_[i].object) || tracks_.jumped(rest_[j].object);
     if (change != memory.change || off) memory = {.change = change};
     if (change == Change::None || change == Change::Zero) return slot;
 
-    const std::size_t size = rest_[i].basis.size() * rest_[j].basis.size();
-    if (unmoved(k, memory)) {
-        slot.values.assign(memory.values.begin(), memory.values.begin() + static_cast<std::ptrdiff_t>(size));
-        slot.error = static_cast<double>(memory.error);
-        return slot;
-    }
     const double allowed = budget.of(i, j);
     const std::uint64_t longest =
         std::min(change == Change::Shaded ? longest_shaded : longest_clear, 2 * memory.gap + 1);
@@ -165,9 +165,9 @@ FrameBlocks OnlineEngine::advance(double time_s, std::span<const geometry::Pose>
     changing_before_ = 0;
     for (std::size_t k = 0; k < slots.size(); ++k) {
         const Slot& slot = slots[k];
-        if (slot.change == Change::None) continue;
+        if (slot.change == Change::None || slot.change == Change::Zero) continue;
         const auto [i, j] = changing_.pairs()[k];
-        changing_before_ += slot.change == Change::Zero ? 0 : 1;
+        ++changing_before_;
         result.pairs.push_back({i, j});
         result.computed += slot.integrated ? 1 : 0;
         result.rays += slot.rays;
