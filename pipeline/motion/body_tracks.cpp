@@ -11,7 +11,8 @@ namespace {
 // Of a step: who is further from where it was expected has left its path. On a circle the quadratic misses by the square
 // of the angle, which is this for steps of 18 degrees.
 constexpr double off_the_path = 0.1;
-constexpr double rounding = 1e-12; // of a body's size and distance: steps below are none
+constexpr double off_the_line = 0.5; // the same where only two places are known: on a circle 30 degrees
+constexpr double rounding = 1e-12;   // of a body's size and distance: steps below are none
 
 } // namespace
 
@@ -41,13 +42,17 @@ BodyTracks::BodyTracks(std::span<const geometry::ElementShape> rest_elements, co
 // The polynomial through the last places, at a time.
 BodyTracks::Points BodyTracks::expected(const Track& track, double time_s) const {
     Points result{};
-    for (std::size_t n = 0; n < seen_; ++n) {
+    for (std::size_t n = 0; n < track.known; ++n) {
         double weight = 1.0;
-        for (std::size_t m = 0; m < seen_; ++m)
+        for (std::size_t m = 0; m < track.known; ++m)
             if (m != n) weight *= (time_s - times_s_[m]) / (times_s_[n] - times_s_[m]);
         for (std::size_t p = 0; p < result.size(); ++p) result[p] += weight * track.places[n][p];
     }
     return result;
+}
+
+void BodyTracks::forget() {
+    for (Track& track : tracks_) track.known = 0;
 }
 
 void BodyTracks::follow(std::uint64_t frame, double time_s, std::span<const geometry::Pose> poses) {
@@ -68,12 +73,13 @@ void BodyTracks::follow(std::uint64_t frame, double time_s, std::span<const geom
             track.moved_at = frame;
             any_moved_at_ = frame;
         }
-        track.jumped = seen_ > 0 && off > off_the_path * step + slack;
+        const double share = track.known > 2 ? off_the_path : off_the_line;
+        track.jumped = track.known > 1 && off > share * step + slack;
         any_jumped_ = any_jumped_ || track.jumped;
+        track.known = track.jumped ? 1 : std::min<std::size_t>(track.known + 1, track.places.size());
         track.places = {places, track.places[0], track.places[1]};
     }
     times_s_ = {time_s, times_s_[0], times_s_[1]};
-    seen_ = std::min<std::size_t>(seen_ + 1, times_s_.size());
     placed_ = true;
 }
 

@@ -23,12 +23,12 @@ public:
     /// @param time_s  later than that of the frame before; otherwise call forget() first
     void follow(std::uint64_t frame, double time_s, std::span<const geometry::Pose> poses);
     /// No expectations from what was seen so far; who moves with the next frame is still noticed.
-    void forget() { seen_ = 0; }
+    void forget();
 
     /// The last frame in which a body was elsewhere than in the frame before; 0 for bodies at rest.
     std::uint64_t moved_at(ObjectId object) const;
     std::uint64_t any_moved_at() const { return any_moved_at_; }
-    /// Whether in the last frame a body was not where it was expected.
+    /// Whether in the last frame a body was not where it was expected; nothing is expected of the frame after that.
     bool jumped(ObjectId object) const;
     bool any_jumped() const { return any_jumped_; }
 
@@ -38,6 +38,7 @@ private:
         Points rest;
         double size;                  ///< of the body [m]
         std::array<Points, 3> places; ///< newest first
+        std::size_t known = 0;        ///< places since it last left its path
         std::uint64_t moved_at = 0;
         bool jumped = false;
     };
@@ -46,7 +47,6 @@ private:
     std::vector<Track> tracks_;
     std::vector<std::size_t> track_of_; ///< per object; `none`
     std::array<double, 3> times_s_{};   ///< newest first
-    std::size_t seen_ = 0;              ///< of times_s_ and places that hold
     bool placed_ = false;               ///< places[0] is that of the frame before
     std::uint64_t any_moved_at_ = 0;
     bool any_jumped_ = false;

@@ -72,7 +72,7 @@ double OfflineEngine::bound_of(const model::ElementPair& pair, std::size_t size)
 }
 
 // Frame by frame what is known of all pairs without integrating: runs of frames through which that stays the same and
-// bodies go smoothly. Where one leaves its path between two frames, the run is parted at the first of both.
+// bodies go smoothly. Where one leaves its path between two frames, the run is parted at both.
 void OfflineEngine::find_runs(ChangingPairs& changing, BodyTracks& tracks, const PosePath& path,
                               std::span<const geometry::ElementShape> rest) {
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -109,9 +109,11 @@ void OfflineEngine::find_runs(ChangingPairs& changing, BodyTracks& tracks, const
                 if (has_block(before[k])) close(k, frame - 1);
                 before[k] = now[k];
                 since[k] = frame;
-            } else if (has_block(now[k]) && since[k] + 1 < frame && off_path(k)) {
+            } else if (has_block(now[k]) && off_path(k)) {
                 close(k, frame - 1);
                 since[k] = frame - 1;
+                close(k, frame);
+                since[k] = frame;
             }
         }
         most_at_once_ = std::max(most_at_once_, at_once);
