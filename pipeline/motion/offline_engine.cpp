@@ -13,7 +13,7 @@ namespace kinelux::motion {
 
 namespace {
 
-// With 3 the light of motion_bench's rooms is off by a third to a twentieth of the tolerance.
+// With 3 the light of motion_bench's rooms is off by a third to a ninth of the tolerance.
 constexpr double better_than_asked = 5.0;
 
 const model::BlockEntry* entry_of(const model::BlockSet& blocks, const model::ElementPair& pair) {
