@@ -7,8 +7,8 @@
 
 #include "cli/stage.h"
 #include "core/log.h"
+#include "engines.h"
 #include "light_case.h"
-#include "motion/exact_engine.h"
 #include "reports.h"
 #include "solve/animation.h"
 #include "solve_saver.h"
@@ -22,6 +22,7 @@ struct Options {
     std::optional<double> tolerance;
     double max_sweeps = solve::SolveOptions{}.max_sweeps;
     double save_every_s = 30.0;
+    std::string engine = "auto";
 
     explicit Options(cli::OptionTable& table) {
         table.add(
@@ -54,6 +55,7 @@ struct Options {
                    .low = 0,
                    .high = 1e9,
                    .decides = cli::Decides::Manners});
+        table.add(stages::engine_row(engine));
     }
     solve::SolveOptions for_target(double target) const {
         static const std::map<std::string, solve::Method> methods{
@@ -86,8 +88,9 @@ int main(int argc, char** argv) {
             stage.step("read coefficients", [&] { return stage.folder().read_coefficients(); });
         const std::vector<double> areas = light.areas();
         const auto frames = stages::frames_of(light.scene, range);
-        motion::ExactEngine engine(blocks, light.elements, light.plan, light.occluders,
-                                   light.transport_options(seed));
+        const stages::NamedEngine engine = stage.step("prepare motion", [&] {
+            return stages::make_engine(options.engine, light, blocks, areas, frames, seed);
+        });
         core::Progress progress("solve", frames.size());
         const auto show = [&](const model::FrameSolution& frame) {
             cli::Stage::throw_if_stopped();
@@ -98,11 +101,12 @@ int main(int argc, char** argv) {
         solve::Checkpoint checkpoint = saver.checkpoint();
         progress.advance(checkpoint.from.solution.frames.size());
         const model::Solution solution = stage.step("solve", [&] {
-            return solve::solve_animation({light.scene, light.plan, blocks, light.tree.elements, areas},
-                                          engine, frames, options.for_target(light.scene.accuracy.target),
-                                          show, std::move(checkpoint));
+            return solve::solve_animation(
+                {light.scene, light.plan, blocks, light.tree.elements, areas}, *engine.engine, frames,
+                options.for_target(light.scene.accuracy.target), show, std::move(checkpoint));
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });
+        stages::report_engine(engine, stage);
         return stages::report_solution(solution, light.scene.accuracy.target, stage);
     });
 }

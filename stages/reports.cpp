@@ -114,7 +114,7 @@ void report_coefficients(const model::Coefficients& blocks, const LightCase& lig
 
 core::ExitCode report_solution(const model::Solution& solution, double target, cli::Stage& stage) {
     double unshot = 0.0, solver_error = 0.0, error = 0.0, sweeps = 0.0;
-    std::uint64_t changed = 0, not_converged = 0;
+    std::uint64_t changed = 0, changing = 0, not_converged = 0;
     for (std::size_t f = 0; f < solution.frames.size(); ++f) {
         const model::FrameSolution& frame = solution.frames[f];
         const std::string key = fmt::format("frames/{}/", f);
@@ -125,6 +125,9 @@ core::ExitCode report_solution(const model::Solution& solution, double target, c
         stage.record().set(key + "error_estimate", frame.error_estimate);
         stage.record().set(key + "sweeps", frame.sweeps);
         stage.record().set(key + "blocks_recomputed", static_cast<std::uint64_t>(frame.blocks_recomputed));
+        stage.record().set(key + "blocks_changing", static_cast<std::uint64_t>(frame.blocks_changing));
+        stage.record().set(key + "blocks_expanded",
+                           static_cast<std::uint64_t>(frame.blocks_changing - frame.blocks_recomputed));
         stage.record().set(key + "converged", frame.converged);
         stage.record().set(key + "seconds", frame.seconds);
         unshot = std::max(unshot, frame.unshot);
@@ -132,11 +135,14 @@ core::ExitCode report_solution(const model::Solution& solution, double target, c
         error = std::max(error, frame.error_estimate);
         sweeps += frame.sweeps;
         changed += frame.blocks_recomputed;
+        changing += frame.blocks_changing;
         not_converged += frame.converged ? 0 : 1;
     }
     stage.count("frames", solution.frames.size());
     stage.count("sweeps", static_cast<std::uint64_t>(std::llround(sweeps)));
+    stage.count("blocks changing", changing);
     stage.count("blocks recomputed", changed);
+    stage.count("blocks expanded", changing - changed);
     stage.figure("unshot", unshot);
     stage.figure("solver error", solver_error);
     stage.figure("error estimate", error);

@@ -40,7 +40,7 @@ const std::array<StageCall, 7>& stage_calls() {
         {"cluster", "cluster.json", "cuts patches into elements, gathers small triangles into clusters", {}},
         {"plan", "plan-record.json", "decides which effects the scene calls for", {}},
         {"coefficients", "coefficients.json", "computes the transport blocks", {"seed", "memory-limit"}},
-        {"solve", "solve.json", "solves for the light of every frame", {"seed", "frames"}, true},
+        {"solve", "solve.json", "solves for the light of every frame", {"seed", "frames", "engine"}, true},
         {"export", "export.json", "writes fields, meters and the ParaView script", {"seed", "frames"}},
     }};
     return calls;
@@ -149,6 +149,11 @@ int run_command(const std::vector<std::string>& arguments) {
     RunTable run("kinelux run", "From a scene to light on surfaces: all stages, only what is stale.",
                  "scene file (.toml), or a mesh with emissive materials");
     bool dry_run = false;
+    std::string engine = "auto";
+    run.options().add({.member = &engine,
+                       .flags = "--engine",
+                       .help = "of motion; see kinelux-solve",
+                       .words = {"auto", "exact", "online", "offline", "paper"}});
     run.options().add(
         {.member = &dry_run,
          .flags = "--dry-run",

@@ -18,6 +18,8 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "kernel/clear_pair.h"
+#include "visibility/pair_blockers.h"
+#include "visibility/polygon_blockers.h"
 
 namespace kinelux::coefficients {
 
@@ -57,6 +59,13 @@ public:
             ends_.emplace_back(element);
         }
         if (plan.moving_occlusion) movers_ = swept_balls(elements, scene, plan);
+        if (!options.occlusion || plan.moving_objects.empty()) return;
+        met_ = met_motions(elements, scene);
+        for (std::uint32_t motion = 0; motion < scene.motions.size(); ++motion) {
+            auto& others = strangers_.emplace_back();
+            for (const auto& carrier : carrier_of_object)
+                others.push_back(carrier && carrier->value != motion ? 1 : 0);
+        }
     }
 
     bool at_rest(std::size_t i, std::size_t j) const { return carrier_of_[i] == carrier_of_[j]; }
@@ -83,7 +92,10 @@ public:
                 continue;
             }
             ++row.examined;
-            add_static_block(pair, row);
+            if (rides(i) && strangers_between(pair))
+                row.moving.push_back(pair); // nothing that would stand is known of it
+            else
+                add_static_block(pair, row);
         }
         return row;
     }
@@ -124,6 +136,15 @@ private:
         return error.has_value();
     }
 
+    // Whether at rest a body of another motion stands between two that ride: their blocks see all that moves.
+    bool strangers_between(const ElementPair& pair) const {
+        if (!options_.occlusion || strangers_.empty() || !may_exchange(pair.i, pair.j)) return false;
+        thread_local visibility::PairBlockers blockers;
+        return blockers.any_between(visibility::shaft_end(elements_[pair.i]),
+                                    visibility::shaft_end(elements_[pair.j]), occluders_.polygons(),
+                                    visibility::Among::Moving, strangers_[carrier_of_[pair.i]]);
+    }
+
     void add_static_block(const ElementPair& pair, Row& row) const {
         const ElementShape& a = elements_[pair.i];
         const ElementShape& b = elements_[pair.j];
@@ -139,7 +160,11 @@ private:
             if (block.values.empty()) return;
             add(pair, block.values, block.error, row);
         }
-        if (!rides && std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
+        if (rides) {
+            if (!met_.empty() && met_[carrier_of_[pair.i]] != 0) row.crossed.push_back(pair);
+            return;
+        }
+        if (std::any_of(movers_.begin(), movers_.end(), [&](const Ball& mover) {
                 return geometry::may_pass_between(a, b, mover.centre, mover.radius);
             }))
             row.crossed.push_back(pair);
@@ -153,6 +178,9 @@ private:
     PairScreen screen_;
     std::vector<kernel::FlatEnd> ends_;
     std::vector<Ball> movers_;
+    std::vector<std::uint8_t> met_; ///< per motion: whether others come near what it carries
+    std::vector<std::vector<std::uint8_t>>
+        strangers_; ///< per motion, per object: 1 = moves, by another motion
     bool grouped_ = false;
     std::vector<ElementPair> near_;
     std::vector<std::uint32_t> riding_;

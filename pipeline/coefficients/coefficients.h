@@ -38,9 +38,9 @@ struct GroupingOptions {
 };
 
 /// The blocks of all pairs at rest relative to each other, with the occlusion by bodies that never move; and the lists
-/// of pairs that change: bodies in relative motion or riding together past something that may come between them, and
-/// pairs at rest that a moving body may come between (judged by the pair's bounding spheres and the mover's bounds over
-/// all frames). In large scenes links between groups take the
+/// of pairs that change: bodies in relative motion, and pairs at rest that a moving body may come between (judged by the
+/// pair's bounding spheres and the mover's bounds over all frames), or on one body that others reach into. In large
+/// scenes links between groups take the
 /// place of the blocks of distant pairs at rest that no moving body can come between (docs/hierarchy.md). Rows are computed in parallel; the result does
 /// not depend on threads.
 /// @param rest_elements  at rest, in order of ElementId

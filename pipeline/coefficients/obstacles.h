@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,11 +16,9 @@ namespace kinelux::coefficients {
 std::vector<Ball> swept_balls(std::span<const geometry::ElementShape> rest_elements,
                               const model::Scene& scene, const model::Plan& plan);
 
-/// What may come between bodies that ride on one motion: balls around elements of all others, resting or moving, at
-/// rest and at all frames, in the place where the riders see them from their own rest position. Flat elements that have
-/// all riders on one side in a frame come between none of them and are left out of it.
-/// @param carrier  a motion that some moving object follows; the scene is settled (geometry::settle_motions)
-std::vector<Ball> obstacles_of_riders(std::span<const geometry::ElementShape> rest_elements,
-                                      const model::Scene& scene, MotionId carrier);
+/// Per motion whether in some frame anything that it does not carry reaches into the box of all that it does.
+/// @param scene  settled (geometry::settle_motions): bodies that keep their distance are on one motion
+std::vector<std::uint8_t> met_motions(std::span<const geometry::ElementShape> rest_elements,
+                                      const model::Scene& scene);
 
 } // namespace kinelux::coefficients

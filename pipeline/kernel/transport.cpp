@@ -344,10 +344,7 @@ public:
         const Sight sight = look();
         if (sight == Sight::Hidden) return {};
         const bool flat = a_.planar && b_.planar;
-        const bool kinked = (a_.planar && crosses_horizon(a_, b_)) ||
-                            (b_.planar && crosses_horizon(b_, a_)) || turns_away(a_, b_) ||
-                            turns_away(b_, a_);
-        const auto rule = kinked ? std::nullopt : far_rule(a_, b_, options_.tolerance);
+        const auto rule = cut_by_horizon(a_, b_) ? std::nullopt : far_rule(a_, b_, options_.tolerance);
         if (!flat && !rule)
             curved(sight);
         else if (!rule || (flat && sight == Sight::Few && clipping_is_cheaper()))
@@ -580,6 +577,11 @@ bool may_exchange(const ElementShape& a, const ElementShape& b) {
     if (&a == &b || a.id == b.id) return !a.planar;
     if (a.planar ? !in_front_of(a, b) : !cone_reaches(a, b)) return false;
     return b.planar ? in_front_of(b, a) : cone_reaches(b, a);
+}
+
+bool cut_by_horizon(const ElementShape& a, const ElementShape& b) {
+    return (a.planar && crosses_horizon(a, b)) || (b.planar && crosses_horizon(b, a)) || turns_away(a, b) ||
+           turns_away(b, a);
 }
 
 TransportBlock transport(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,

@@ -39,4 +39,7 @@ TransportBlock transport(const geometry::ElementShape& a, const geometry::Elemen
 /// Whether any point of a can face any point of b at all (normal cones and half spaces).
 bool may_exchange(const geometry::ElementShape& a, const geometry::ElementShape& b);
 
+/// Whether the plane of one of two planar elements cuts the other: where it moves on, their block has a bend in time.
+bool cut_by_horizon(const geometry::ElementShape& a, const geometry::ElementShape& b);
+
 } // namespace kinelux::kernel

@@ -71,7 +71,7 @@ struct Coefficients {
     Hierarchy hierarchy; ///< transport between groups at rest that no moving body can come between
     std::vector<ElementPair> moving_pairs; ///< bodies move relative to each other; recomputed in every frame
     std::vector<ElementPair>
-        crossed_pairs;         ///< at rest, but a moving body may enter between them in some frame
+        crossed_pairs; ///< at rest relative to each other, but another body may enter between them in some frame
     double pairs_examined = 0; ///< of static pairs [1]
     double rays_cast = 0;      ///< for static blocks [1]
 };

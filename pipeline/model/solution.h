@@ -25,8 +25,11 @@ struct FrameSolution {
     double error_estimate = 0.0;      ///< estimated relative L2 error of B over non-emitting elements [1]
     std::vector<float> element_error; ///< estimated RMS error of irradiance per element [W/m2 or lx]
     bool converged = true;
-    std::uint32_t blocks_recomputed = 0; ///< blocks that changed since the previous frame
-    double seconds = 0.0;                ///< spent on this frame; not part of the file's bytes
+    std::uint32_t blocks_recomputed =
+        0; ///< blocks integrated at this frame; other changing ones were expanded
+    std::uint32_t blocks_changing =
+        0;                ///< pairs whose block is not the static one; not part of the file's bytes
+    double seconds = 0.0; ///< spent on this frame; not part of the file's bytes
 };
 
 struct Solution {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,6 +33,9 @@ public:
     /// Whether the blocks of a frame depend on the frames asked for before. An animation that is taken up again leads
     /// such an engine through those first.
     virtual bool remembers() const { return true; }
+
+    virtual std::size_t bytes() const { return 0; }      ///< held for blocks at other times [B]
+    virtual std::uint64_t prepared() const { return 0; } ///< blocks integrated before the first frame
 };
 
 } // namespace kinelux::motion

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace kinelux::motion {
 /// The elements of moving bodies in their place at one time; all others stay as they are at rest.
 class PosedElements {
 public:
-    /// @param rest   in order of ElementId; must outlive this
-    /// @param poses  world_from_rest, one per object
+    /// @param rest    in order of ElementId; must outlive this
+    /// @param poses   world_from_rest, one per object
+    /// @param wanted  one per element: 0 = is not asked for, may stay at rest; empty: all are
     PosedElements(std::span<const geometry::ElementShape> rest, const model::Plan& plan,
-                  std::span<const geometry::Pose> poses);
+                  std::span<const geometry::Pose> poses, std::span<const std::uint8_t> wanted = {});
 
     const geometry::ElementShape& operator[](std::size_t element) const {
         return index_[element] == none ? rest_[element] : moved_[index_[element]];

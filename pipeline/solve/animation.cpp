@@ -228,6 +228,46 @@ std::vector<float> irradiance_errors(const model::UnknownLayout& layout,
     return result;
 }
 
+motion::Importance importance_of(const Animation& animation, motion::Engine& engine,
+                                 std::span<const std::uint32_t> frames) {
+    constexpr double coarse = 1e-2;
+    const Surfaces surfaces = surfaces_of(animation);
+    const auto& layout = animation.coefficients.layout;
+    motion::Importance result;
+    double reflected = 0.0, area = 0.0;
+    for (std::size_t e = 0; e < layout.elements(); ++e) {
+        const auto rho = std::span(surfaces.reflectance).subspan(e * surfaces.channels, surfaces.channels);
+        result.reflectance.push_back(*std::max_element(rho.begin(), rho.end()));
+        reflected += result.reflectance.back() * animation.areas[e];
+        area += animation.areas[e];
+    }
+    result.bounces = 1.0 / (1.0 - reflected / area);
+    result.radiosity.assign(layout.elements(), 0.0);
+    BlockOperator blocks(layout, animation.coefficients.static_blocks);
+    const LinkedOperator linked(blocks, animation.coefficients.hierarchy);
+    const TransportOperator& transport =
+        animation.coefficients.hierarchy.empty() ? static_cast<const TransportOperator&>(blocks) : linked;
+    for (const std::uint32_t number : frames) {
+        const double time_s = animation.scene.time.time_of_frame(number);
+        auto changed = engine.advance(time_s, geometry::object_poses(animation.scene, time_s));
+        blocks.replace(changed.pairs, std::move(changed.blocks));
+        const std::vector<double> exitance = exitance_at(animation, surfaces.channels, time_s);
+        const SystemSolution solved =
+            solve_system({transport, surfaces.channels, exitance, surfaces.reflectance, animation.areas},
+                         {.tolerance = coarse}, {});
+        double size = 0.0;
+        for (std::size_t e = 0; e < layout.elements(); ++e) {
+            const double own = square_sum(
+                std::span(solved.radiosity)
+                    .subspan(layout.offsets[e] * surfaces.channels, layout.count(e) * surfaces.channels));
+            result.radiosity[e] = std::max(result.radiosity[e], std::sqrt(own));
+            size += surfaces.emits[e] ? 0.0 : own;
+        }
+        result.size = number == frames.front() ? std::sqrt(size) : std::min(result.size, std::sqrt(size));
+    }
+    return result;
+}
+
 namespace {
 
 /// The frames of one animation: what they have in common, and what changes from one to the next.
@@ -262,7 +302,7 @@ public:
             frame.sweeps = 0.0;
         } else {
             if (same_blocks)
-                recomputed_ = 0;
+                recomputed_ = changing_ = 0;
             else
                 advance(time_s);
             frame = solved();
@@ -287,6 +327,7 @@ private:
         motion::FrameBlocks changed =
             engine_.advance(time_s, geometry::object_poses(animation_.scene, time_s));
         recomputed_ = static_cast<std::uint32_t>(changed.computed);
+        changing_ = static_cast<std::uint32_t>(changed.pairs.size());
         entries_ = entries_at(animation_.coefficients.static_blocks, changed);
         blocks_.replace(changed.pairs, std::move(changed.blocks));
     }
@@ -296,6 +337,7 @@ private:
                                                            : solver_.solve_frame(transport(), exitance_);
         const model::Coefficients& coefficients = animation_.coefficients;
         frame.blocks_recomputed = recomputed_;
+        frame.blocks_changing = changing_;
         frame.element_error = irradiance_errors(coefficients.layout, entries_, animation_.areas, exitance_,
                                                 frame, surfaces_.channels, coefficients.hierarchy);
         frame.error_estimate = radiosity_error(coefficients.layout, surfaces_, animation_.areas, frame);
@@ -309,9 +351,9 @@ private:
     TemporalSolver solver_;
     BlockOperator blocks_;
     const LinkedOperator linked_;
-    std::vector<model::BlockEntry> entries_; ///< of all blocks as they are
-    std::vector<double> exitance_;           ///< of the last frame
-    std::uint32_t recomputed_ = 0;
+    std::vector<model::BlockEntry> entries_;      ///< of all blocks as they are
+    std::vector<double> exitance_;                ///< of the last frame
+    std::uint32_t recomputed_ = 0, changing_ = 0; ///< blocks of the last frame
 };
 
 } // namespace

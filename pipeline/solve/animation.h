@@ -12,6 +12,7 @@
 #include "model/scene.h"
 #include "model/solution.h"
 #include "motion/engine.h"
+#include "motion/importance.h"
 #include "solve/solve.h"
 
 namespace kinelux::solve {
@@ -43,6 +44,12 @@ model::Solution solve_animation(const Animation& animation, motion::Engine& engi
                                 std::span<const std::uint32_t> frames, const SolveOptions& options,
                                 const std::function<void(const model::FrameSolution&)>& progress,
                                 Checkpoint checkpoint = {});
+
+/// How much the error of each pair's block matters, from the light of a few frames solved to a hundredth.
+/// @param engine  may be coarse
+/// @param frames  at least one; three say enough
+motion::Importance importance_of(const Animation& animation, motion::Engine& engine,
+                                 std::span<const std::uint32_t> frames);
 
 /// All blocks as they are at one time: the static ones, with those of `frame` in their place.
 model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame);

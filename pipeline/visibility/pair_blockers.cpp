@@ -63,6 +63,21 @@ Sight PairBlockers::between(const ShaftEnd& a, const ShaftEnd& b, const PolygonB
     return Sight::Few;
 }
 
+bool PairBlockers::any_between(const ShaftEnd& a, const ShaftEnd& b, const PolygonBlockers& polygons,
+                               Among among, std::span<const std::uint8_t> counts) {
+    count_ = 0;
+    const Shaft shaft(a, b);
+    if (shaft.empty()) return false;
+    polygons.visit(shaft, among, [&](std::uint32_t polygon) {
+        const std::uint32_t body = polygons[polygon].body;
+        if (body < counts.size() && counts[body] == 0) return 0.0;
+        return take(polygon, polygons, shaft) ? std::numeric_limits<double>::infinity() : 0.0;
+    });
+    const bool found = count_ > 0;
+    count_ = 0;
+    return found;
+}
+
 // Adds a polygon where a part of it lies in the shaft.
 bool PairBlockers::take(std::uint32_t polygon, const PolygonBlockers& polygons, const Shaft& shaft) {
     if (blockers_.size() == count_) blockers_.emplace_back();

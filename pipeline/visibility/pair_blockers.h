@@ -31,6 +31,12 @@ public:
     Sight between(const ShaftEnd& a, const ShaftEnd& b, const PolygonBlockers& polygons, Among among,
                   std::size_t most);
 
+    /// Whether a polygon of a body that counts reaches into the shaft of a pair; the same test as for Clear, ended by the
+    /// first one found.
+    /// @param counts  one per body, 0 = looked through; bodies beyond its end count
+    bool any_between(const ShaftEnd& a, const ShaftEnd& b, const PolygonBlockers& polygons, Among among,
+                     std::span<const std::uint8_t> counts = {});
+
     /// Of the last pair: the polygons between when Few, ordered with convex ones first; the first ones found when Many.
     std::span<const PlanarBlocker> blockers() const { return std::span(blockers_).first(count_); }
 

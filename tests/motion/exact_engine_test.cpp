@@ -53,7 +53,7 @@ model::Coefficients from_scratch(const LampRoom& room, double time_s, int n) {
 TEST(ExactEngine, frames_equal_a_scene_built_anew) {
     for (const bool with_shelf : {false, true}) {
         LampRoom room(with_shelf);
-        const int n = 4;
+        const int n = 2;
         const auto shapes = support::shapes_of(room.set, n, 2);
         auto occluders = room.occluders();
         const kernel::TransportOptions options{.tolerance = 1e-3};
@@ -76,8 +76,8 @@ TEST(ExactEngine, frames_equal_a_scene_built_anew) {
                 difference += (y[k] - expected[k]) * (y[k] - expected[k]);
                 size += expected[k] * expected[k];
             }
-            // What differs is which rays sample the shadow of the lamp.
-            EXPECT_LT(std::sqrt(difference / size), 0.02) << "time " << time << " shelf " << with_shelf;
+            // Quadrature is planned anew, and turns by rounding.
+            EXPECT_LT(std::sqrt(difference / size), 1e-3) << "time " << time << " shelf " << with_shelf;
         }
     }
 }

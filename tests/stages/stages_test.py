@@ -392,6 +392,28 @@ class MovingScene(StageTest):
         self.assertTrue(all(f["converged"] for f in found))
         self.assert_fails(2, r"shooting needs the blocks of all pairs", "kinelux-solve", "case", "--method", "shooting")
 
+    def test_engines_of_motion_agree_within_the_accuracy(self):
+        scene = scenes.write_room(self.folder, moving=True, frames=12)
+        self.run_ok("kinelux", "run", scene, "-o", "case")
+        case = self.folder / "case"
+        radiosity = {}
+        for engine in ("auto", "exact", "online", "offline"):
+            self.run_ok("kinelux-solve", "case", "--engine", engine)
+            self.run_ok("kinelux-export", "case")
+            record = json.loads((case / "solve.json").read_text(encoding="utf-8"))
+            self.assertEqual(record["engine"], "offline" if engine == "auto" else engine)
+            for frame in record["frames"]:
+                self.assertEqual(frame["blocks_changing"], frame["blocks_recomputed"] + frame["blocks_expanded"])
+            self.assertGreater(record["counts"]["blocks_changing"], 0)
+            self.assertEqual("memory_of_motion_MiB" in record["figures"], engine != "exact")
+            with (case / "meters.csv").open(encoding="utf-8", newline="") as file:
+                radiosity[engine] = [float(row["value"]) for row in csv.DictReader(file)]
+        self.assertEqual(radiosity["auto"], radiosity["offline"])
+        for engine in ("online", "offline"):
+            for found, expected in zip(radiosity[engine], radiosity["exact"]):
+                self.assertAlmostEqual(found, expected, delta=0.1 * abs(expected) + 1e-9, msg=engine)
+        self.assert_fails(2, r"--engine", "kinelux-solve", "case", "--engine", "perfect")
+
     def readings(self, case, quantity="irradiance"):
         """{(frame, meter, channel): value} of a quantity."""
         with (self.folder / case / "meters.csv").open(encoding="utf-8", newline="") as file:
