@@ -272,7 +272,7 @@ kernel::TransportOptions transport_options_for(const model::Scene& scene, const 
     kernel::TransportOptions options;
     options.tolerance = std::clamp(share * scene.accuracy.target / bounces, 1e-9, 0.1);
     // Errors of what stands between have random signs: of n blocks of one size they add up to 1 / sqrt(n) of the row.
-    constexpr double most_scattered = 20.0; // a row that matters may go to a few elements only
+    constexpr double most_scattered = 40.0; // a row that matters may go to a few elements only
     const double scattered = std::min(std::sqrt(static_cast<double>(elements.size())), most_scattered);
     options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
     options.occlusion = plan.static_occlusion || plan.moving_occlusion;
