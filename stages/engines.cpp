@@ -53,7 +53,7 @@ cli::OptionRow engine_row(std::string& member) {
     return {.member = &member,
             .flags = "--engine",
             .help =
-                "how blocks change when bodies move: integrated anew, continued from frame to frame, or "
+                "how blocks change when bodies move: integrated anew, continued from frame to frame, "
                 "polynomials in time, or by the publication's series; auto: offline for more than 8 frames, "
                 "else exact",
             .words = {"auto", "exact", "online", "offline", "paper"}};

@@ -610,7 +610,7 @@ class ForeignModels(StageTest):
         obj.group("lamp", *scenes.lamp([centre[0] - size / 3, centre[1] - size / 3],
                                        [centre[0] + size / 3, centre[1] + size / 3], room[1][2] - 0.05 * size))
         obj.write(self.folder / "room.obj")
-        text = scenes.ROOM.format(target="20%", end_s=0.0, frames=1, block_motion="", quantity="radiometric", more="")
+        text = scenes.ROOM.format(target="20%", end_s=0.0, frames=1, block_motion="", quantity="radiometric", more="", lamp="")
         text = text.replace("element_size = 0.5", f"element_size = {0.5 * size}")
         text = text.replace('mesh = "room.obj"\ngroup = "block"', f'mesh = "{file}"')
         scene = self.folder / "scene.toml"
