@@ -73,7 +73,6 @@ PaperEngine::PaperEngine(const model::Coefficients& coefficients, std::span<cons
       occluders_(occluders),
       options_(options),
       paper_(std::move(paper)),
-      crossed_engine_(crossed_, rest_elements, plan, occluders, options),
       bodies_(moving_bodies(rest_elements, plan)),
       pairs_(coefficients.moving_pairs.size()) {
     require_range("order", paper_.expansion.order, 1, most_orders);
@@ -85,6 +84,7 @@ PaperEngine::PaperEngine(const model::Coefficients& coefficients, std::span<cons
     std::copy_if(coefficients.crossed_pairs.begin(), coefficients.crossed_pairs.end(),
                  std::back_inserter(crossed_.crossed_pairs),
                  [&](const ElementPair& pair) { return shadows_exactly(pair); });
+    crossed_engine_.emplace(crossed_, rest_elements, plan, occluders, options);
 }
 
 bool PaperEngine::shadows_exactly(const ElementPair& pair) const {
@@ -97,7 +97,7 @@ bool PaperEngine::shadows_exactly(const ElementPair& pair) const {
 }
 
 FrameBlocks PaperEngine::advance(double time_s, std::span<const geometry::Pose> poses) {
-    FrameBlocks crossed = crossed_engine_.advance(time_s, poses); // moves the occluders
+    FrameBlocks crossed = crossed_engine_->advance(time_s, poses); // moves the occluders
     counts_ = {};
     if (plan_.moving_objects.empty()) return crossed;
     const PosedElements elements(rest_, plan_, poses);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -86,8 +87,8 @@ private:
     visibility::Occluders& occluders_;
     kernel::TransportOptions options_;
     PaperOptions paper_;
-    model::Coefficients crossed_; ///< only pairs at rest whose shadows by movers count
-    ExactEngine crossed_engine_;  ///< for those
+    model::Coefficients crossed_;               ///< only pairs at rest whose shadows by movers count
+    std::optional<ExactEngine> crossed_engine_; ///< for those
     std::vector<MovingBody> bodies_;
     std::vector<ExpandedPair> pairs_;                ///< one per moving pair
     std::vector<std::shared_ptr<PairTrack>> tracks_; ///< that some pair still refers to
