@@ -17,6 +17,11 @@ coefficients::Grouping grouping(const std::string& word) {
     return word == "always" ? coefficients::Grouping::Always : coefficients::Grouping::Auto;
 }
 
+kernel::Integration integration_named(const std::string& word) {
+    if (word == "sobol") return kernel::Integration::Sobol;
+    return word == "monte-carlo" ? kernel::Integration::Random : kernel::Integration::Automatic;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -40,11 +45,27 @@ int main(int argc, char** argv) {
          .flags = "--groups",
          .help = "whether distant groups of elements exchange light as one: in large scenes, never, always",
          .words = {"auto", "never", "always"}});
+    std::string integration = "automatic";
+    stage.options().add({.member = &integration,
+                         .flags = "--integration",
+                         .help =
+                             "of blocks at rest: the rule that suits the pair, scrambled Sobol points, or "
+                             "independent points as the publication has them",
+                         .words = {"automatic", "sobol", "monte-carlo"}});
+    std::uint32_t samples = kernel::TransportOptions{}.samples;
+    stage.options().add({.member = &samples,
+                         .flags = "--samples",
+                         .help = "points per block and scrambling, of 8, where points are chosen",
+                         .low = 1,
+                         .high = 1u << 28u});
     return stage.run(argc, argv, [&](cli::Stage&) {
         const auto light = stage.step("read", [&] { return stages::read_light_case(stage.folder()); });
         const auto blocks = stage.step("coefficients", [&] {
+            kernel::TransportOptions options = light.transport_options(seed);
+            options.integration = integration_named(integration);
+            options.samples = samples;
             return coefficients::compute_coefficients(
-                light.elements, light.scene, light.plan, light.occluders, light.transport_options(seed),
+                light.elements, light.scene, light.plan, light.occluders, options,
                 memory_limit.value_or(cli::default_memory_limit_mib()), {.use = grouping(groups)});
         });
         stage.step("write", [&] { stage.folder().write_coefficients(blocks); });

@@ -151,7 +151,9 @@ private:
         const bool rides = this->rides(pair.i);
         const Screened screened = screen_.look(pair.i, pair.j);
         if (screened == Screened::Apart || (screened == Screened::Hidden && !rides)) return;
-        if (screened != Screened::Clear || rides || !add_clear_block(pair, row)) {
+        const bool short_way =
+            screened == Screened::Clear && !rides && options_.integration == kernel::Integration::Automatic;
+        if (!short_way || !add_clear_block(pair, row)) {
             kernel::TransportOptions options = options_;
             options.occluders = rides ? visibility::Among::Moving : visibility::Among::Resting;
             options.occlusion = options_.occlusion && (rides || screened != Screened::Clear);

@@ -11,6 +11,7 @@
 #include "kernel/far_pair.h"
 #include "kernel/near_pair.h"
 #include "kernel/polygon_moments.h"
+#include "kernel/quasi_monte_carlo.h"
 #include "visibility/pair_blockers.h"
 
 namespace kinelux::kernel {
@@ -587,6 +588,14 @@ bool cut_by_horizon(const ElementShape& a, const ElementShape& b) {
 TransportBlock transport(const ElementShape& a, const ElementShape& b, const visibility::Occluders& occluders,
                          const TransportOptions& options) {
     if (!may_exchange(a, b)) return {};
+    if (options.integration != Integration::Automatic)
+        return quasi_monte_carlo(
+            a, b, occluders,
+            {.samples = options.samples,
+             .points = options.integration == Integration::Sobol ? Points::Sobol : Points::Random,
+             .occlusion = options.occlusion,
+             .occluders = options.occluders,
+             .seed = options.seed});
     return PairTransport(a, b, occluders, options).block();
 }
 

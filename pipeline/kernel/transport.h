@@ -10,6 +10,13 @@
 
 namespace kinelux::kernel {
 
+/// How blocks are integrated.
+enum class Integration : std::uint8_t {
+    Automatic, ///< by the rule that suits the pair (docs/theory.md, Blocks)
+    Sobol,     ///< kernel::quasi_monte_carlo at scrambled Sobol points
+    Random     ///< the same at independent points: Monte Carlo, as the publication has it
+};
+
 struct TransportOptions {
     double tolerance =
         1e-3; ///< of a block with nothing in between [1], 1e-9..0.1, relative to its size, or to 1e-3
@@ -20,6 +27,8 @@ struct TransportOptions {
     std::size_t most_blockers = 6; ///< few, for exact_sight
     visibility::Among occluders = visibility::Among::All; ///< which bodies may stand between
     std::uint64_t seed = 1;
+    Integration integration = Integration::Automatic;
+    std::uint32_t samples = 128; ///< of the other integrations: points per scrambling, of 8; 1..2^28
 };
 
 /// Transport between two elements in world position.

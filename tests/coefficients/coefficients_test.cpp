@@ -121,6 +121,29 @@ TEST(Coefficients, bodies_that_ride_together_are_watched_where_something_may_com
     EXPECT_TRUE(mover.watches_the_riders());
 }
 
+TEST(Coefficients, integrated_at_points_are_within_a_few_standard_errors_of_the_automatic_ones) {
+    model::PatchSet set;
+    set.patches = support::box(Vec3(0), Vec3(1, 2, 1), support::Facing::Inwards);
+    set.patches.push_back(support::rectangle({0.3, 0.5, 0.5}, {0.4, 0, 0}, {0, 0.8, 0}));
+    const auto scene = support::plain_scene(1);
+    const auto shapes = support::shapes_of(set, 2, 1);
+    const auto occluders = support::occluders_of(set, scene);
+    const model::Plan plan{.degree = 1};
+    const auto exact = compute_coefficients(shapes, scene, plan, occluders, {.tolerance = 1e-4}, 1e6);
+    for (const auto integration : {kernel::Integration::Sobol, kernel::Integration::Random}) {
+        const auto sampled = compute_coefficients(shapes, scene, plan, occluders,
+                                                  {.integration = integration, .samples = 256}, 1e6);
+        double difference = 0.0, stated = 0.0;
+        const auto of_exact = element_row_sums(exact, shapes), found = element_row_sums(sampled, shapes);
+        for (std::size_t e = 0; e < found.size(); ++e) difference += std::abs(found[e] - of_exact[e]);
+        for (const model::BlockEntry& entry : sampled.static_blocks.entries)
+            stated += static_cast<double>(entry.error);
+        EXPECT_GT(difference, 0.0) << "points leave an error";
+        EXPECT_LT(difference, 2.0 * stated);
+        EXPECT_GT(stated, 0.0);
+    }
+}
+
 TEST(Coefficients, a_scene_at_rest_has_no_pairs_that_change) {
     Carriage still(2.0);
     for (model::Object& object : still.scene.objects) object.motion.reset();
