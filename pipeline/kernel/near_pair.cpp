@@ -32,6 +32,7 @@ struct Direction {
     double raw_error = 0.0;    ///< of the cell's values, before calibration [1]
     double calibration = 10.0; ///< what raw errors were found to be wrong by nearby
     double foretold = 0.0;     ///< error relative to the integrand's size, from where it is singular [1]
+    double place = 0.5;        ///< Singularity::place
     double division = 0.5;
 
     double error() const { return calibration * raw_error; }
@@ -43,6 +44,7 @@ struct Cell {
     Direction s, t;
     double wanted = 0.0; ///< foretold error x area that will do [m2]
     std::vector<double> values;
+    double brightest2 = 0.0; ///< largest square sum of inner integrals at the nodes [1/m2]
 
     double error() const { return s.error() + t.error(); }
 };
@@ -181,6 +183,7 @@ public:
             divide_dark_cells();
             refine();
         } else if (options_.settle) {
+            divide_blind_cells();
             settle();
         }
 
@@ -223,6 +226,44 @@ private:
             }
             cells_ = std::move(next);
         }
+    }
+
+    // Light may fall on a spot that all nodes of a cell miss, so that their values do not tell of it: where an edge or corner
+    // of the polygon all but touches the cell. A cell that is far brighter there than at its nodes is planned anew, by what
+    // such a spot would add to the block.
+    void divide_blind_cells() {
+        if (options_.polygon == nullptr) return;
+        constexpr double contrast2 = 4.0;
+        const double allowed = options_.tolerance * std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
+        std::vector<Cell> next, blind;
+        for (Cell& cell : cells_) {
+            const double unsure = area_of(cell) * std::max(cell.s.foretold, cell.t.foretold);
+            const double bright2 = unsure > 0.0 ? brightness2(cell) : 0.0;
+            const double wanted = allowed * std::sqrt(element_.area / bright2);
+            if (bright2 <= contrast2 * cell.brightest2 || unsure <= wanted) {
+                next.push_back(std::move(cell));
+                continue;
+            }
+            cell.wanted = wanted;
+            blind.push_back(std::move(cell));
+        }
+        for (Cell& part : planned(std::move(blind))) {
+            evaluate(part);
+            next.push_back(std::move(part));
+        }
+        cells_ = std::move(next);
+    }
+
+    // Square sum of the inner integrals where a cell's directions are nearest to a singularity.
+    double brightness2(const Cell& cell) {
+        const auto& c = cell.corners;
+        const Vec2 bottom = glm::mix(c[0], c[1], cell.t.place), top = glm::mix(c[3], c[2], cell.t.place);
+        const Vec2 at = glm::mix(bottom, top, cell.s.place);
+        Vec2 parameter;
+        inner_.gather(geometry::node_at(element_, *cell.facet, {1.0 - at.x - at.y, at.x, at.y}, parameter),
+                      gathered_);
+        ++points_;
+        return norm2(gathered_);
     }
 
     static void append_cells(const OuterPiece& piece, std::vector<Cell>& cells) {
@@ -306,6 +347,7 @@ private:
         const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
         const double log_rate = std::log(nearest.rate);
         direction.rate = nearest.rate;
+        direction.place = nearest.place;
         constexpr int fewest = 2;
         const double amplitude =
             2.0 * (2.0 + element_.basis.degree()); // on the ellipse through the singularity
@@ -432,6 +474,7 @@ private:
         along_s_.assign(ns * size_, 0.0);
         along_t_.assign(nt * size_, 0.0);
         cell.values.assign(size_, 0.0);
+        cell.brightest2 = 0.0;
         const auto& c = cell.corners;
         for (std::size_t i = 0; i < ns; ++i)
             for (std::size_t j = 0; j < nt; ++j) {
@@ -439,6 +482,7 @@ private:
                 const Vec2 ds = c[3] + t_rule.nodes[j] * (c[2] - c[3]) - bottom;
                 const Vec2 dt = (1.0 - s_rule.nodes[i]) * (c[1] - c[0]) + s_rule.nodes[i] * (c[2] - c[3]);
                 set_entries(cell.facet, bottom + s_rule.nodes[i] * ds, std::abs(ds.x * dt.y - ds.y * dt.x));
+                cell.brightest2 = std::max(cell.brightest2, norm2(gathered_));
                 for (std::size_t e = 0; e < size_; ++e) {
                     along_s_[i * size_ + e] += t_rule.weights[j] * entries_[e];
                     along_t_[j * size_ + e] += s_rule.weights[i] * entries_[e];
