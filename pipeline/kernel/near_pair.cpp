@@ -33,6 +33,7 @@ struct Direction {
     double calibration = 10.0; ///< what raw errors were found to be wrong by nearby
     double foretold = 0.0;     ///< error relative to the integrand's size, from where it is singular [1]
     double place = 0.5;        ///< Singularity::place
+    double layer = std::numeric_limits<double>::infinity(); ///< Singularity::layer
     double division = 0.5;
 
     double error() const { return calibration * raw_error; }
@@ -94,6 +95,7 @@ struct Singularity {
         1e9; ///< by which Gauss errors fall per degree, >= 1; none = finite, for quotients of logarithms
     double place = 0.5;                                        ///< its real part, in 0..1
     double distance = std::numeric_limits<double>::infinity(); ///< of the singular point from the line [m]
+    double layer = std::numeric_limits<double>::infinity();    ///< its imaginary part, >= 0
 };
 
 class Foreteller {
@@ -149,7 +151,8 @@ private:
         const std::complex<double> x = 2.0 * z - 1.0;
         const std::complex<double> root = std::sqrt(x * x - 1.0);
         const double rate = std::max(std::abs(x + root), std::abs(x - root));
-        if (clearly * rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
+        if (clearly * rate < nearest.rate)
+            nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance, z.imag()};
     }
 
     const InnerPolygon& polygon_;
@@ -234,7 +237,8 @@ private:
     void divide_blind_cells() {
         if (options_.polygon == nullptr) return;
         constexpr double contrast2 = 4.0;
-        const double allowed = options_.tolerance * std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
+        const double allowed =
+            options_.tolerance * std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
         std::vector<Cell> next, blind;
         for (Cell& cell : cells_) {
             const double unsure = area_of(cell) * std::max(cell.s.foretold, cell.t.foretold);
@@ -348,6 +352,7 @@ private:
         const double log_rate = std::log(nearest.rate);
         direction.rate = nearest.rate;
         direction.place = nearest.place;
+        direction.layer = nearest.layer;
         constexpr int fewest = 2;
         const double amplitude =
             2.0 * (2.0 + element_.basis.degree()); // on the ellipse through the singularity
@@ -499,7 +504,27 @@ private:
                 direction->raw_error = error_left(direction == &cell.s ? along_s_ : along_t_, *direction);
                 direction->calibration = 1.0;
             }
+            add_unseen_layers(cell);
         }
+    }
+
+    // Whether a singularity is so close to the cell that what happens there happens between two nodes.
+    static bool hides_layer(const Direction& direction) {
+        double to_node = 1.0;
+        for (const double node : geometry::gauss_rule(direction.nodes).nodes)
+            to_node = std::min(to_node, std::abs(node - direction.place));
+        return direction.layer < 0.5 * to_node;
+    }
+
+    // A jump that spreads over a layer as wide as a singularity is far is not in the coefficients when no node is in it.
+    void add_unseen_layers(Cell& cell) {
+        if (options_.polygon == nullptr || !(hides_layer(cell.s) || hides_layer(cell.t))) return;
+        const double jump = std::abs(std::sqrt(brightness2(cell)) - std::sqrt(cell.brightest2));
+        constexpr double ends = 2.0; // of the cell, where another layer may be
+        const double per_share = ends * jump * area_of(cell) / std::sqrt(element_.area);
+        for (Direction* direction : {&cell.s, &cell.t})
+            if (hides_layer(*direction))
+                direction->raw_error = std::max(direction->raw_error, direction->layer * per_share);
     }
 
     // entries_ = phi_k(x) gather_l(x) times the area per (s, t) at one point.
