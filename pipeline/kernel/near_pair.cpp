@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <iterator>
 #include <limits>
 #include <utility>
 
 #include "geometry/quadrature.h"
+#include "kernel/singularity.h"
 
 namespace kinelux::kernel {
 
@@ -20,9 +20,6 @@ using geometry::Facet;
 using geometry::SurfaceNode;
 
 constexpr int most_nodes = 12;
-// Symmetric elements make equal candidates: the first is taken unless another is better by more than rounding, so that
-// an element's place does not choose.
-constexpr double clearly = 1.0 + 1e-6;
 
 // A bilinear quadrilateral in a facet's barycentric coordinates: s runs from the edge 0-1 to the edge 3-2, t along them.
 // A triangle has 2 = 3. Each direction has its Gauss rule, its error, and where it is divided.
@@ -88,75 +85,6 @@ double norm2(std::span<const double> values) {
     for (const double value : values) sum += value * value;
     return sum;
 }
-
-// The nearest singularity of the inner integral as seen along a line through a cell, from 0 to 1.
-struct Singularity {
-    double rate =
-        1e9; ///< by which Gauss errors fall per degree, >= 1; none = finite, for quotients of logarithms
-    double place = 0.5;                                        ///< its real part, in 0..1
-    double distance = std::numeric_limits<double>::infinity(); ///< of the singular point from the line [m]
-    double layer = std::numeric_limits<double>::infinity();    ///< its imaginary part, >= 0
-};
-
-class Foreteller {
-public:
-    explicit Foreteller(const InnerPolygon& polygon) : polygon_(polygon) {}
-
-    // Of the straight line from a to b.
-    void along(const Vec3& a, const Vec3& b, Singularity& nearest) const {
-        const Vec3 d = b - a;
-        for (std::size_t l = 0; l < polygon_.loops.size(); ++l) {
-            const std::span<const Vec3> loop = polygon_.loops[l];
-            for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
-                consider_corner(a - loop[j], d, nearest);
-                consider_edge(a - loop[j], d, loop[i] - loop[j], nearest);
-            }
-        }
-        consider_plane(a, d, nearest);
-    }
-
-private:
-    // |r0 + z d| = 0
-    static void consider_corner(const Vec3& r0, const Vec3& d, Singularity& nearest) {
-        const double d2 = glm::dot(d, d);
-        if (!(d2 > 0.0)) return;
-        const double real = -glm::dot(r0, d) / d2;
-        const double distance = glm::length(r0 + real * d);
-        consider({real, distance / std::sqrt(d2)}, distance, nearest);
-    }
-
-    // The distance from the line of the edge is 0, abreast of the edge itself.
-    static void consider_edge(const Vec3& r0, const Vec3& d, const Vec3& edge, Singularity& nearest) {
-        constexpr double parallel = 1e-12;
-        const double length2 = glm::dot(edge, edge);
-        if (!(length2 > 0.0)) return;
-        const Vec3 r_across = r0 - glm::dot(r0, edge) / length2 * edge,
-                   d_across = d - glm::dot(d, edge) / length2 * edge;
-        const double d2 = glm::dot(d_across, d_across);
-        if (d2 <= parallel * glm::dot(d, d)) return;
-        const double real = -glm::dot(r_across, d_across) / d2;
-        const double abreast = glm::dot(r0 + real * d, edge) / length2;
-        if (abreast < 0.0 || abreast > 1.0) return;
-        const double distance = glm::length(r_across + real * d_across);
-        consider({real, distance / std::sqrt(d2)}, distance, nearest);
-    }
-
-    void consider_plane(const Vec3& a, const Vec3& d, Singularity& nearest) const {
-        const double h0 = glm::dot(polygon_.normal, a - polygon_.origin),
-                     slope = glm::dot(polygon_.normal, d);
-        if (std::abs(slope) > 0.0) consider({-h0 / slope, 0.0}, 0.0, nearest);
-    }
-
-    static void consider(const std::complex<double>& z, double distance, Singularity& nearest) {
-        const std::complex<double> x = 2.0 * z - 1.0;
-        const std::complex<double> root = std::sqrt(x * x - 1.0);
-        const double rate = std::max(std::abs(x + root), std::abs(x - root));
-        if (clearly * rate < nearest.rate)
-            nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance, z.imag()};
-    }
-
-    const InnerPolygon& polygon_;
-};
 
 class OuterIntegrator {
 public:
@@ -328,14 +256,14 @@ private:
     bool foretell(Cell& cell) const {
         const double area = area_of(cell);
         if (!(area > 0.0)) return true; // holds nothing
-        const Foreteller foreteller(*options_.polygon);
+        const InnerPolygon& polygon = *options_.polygon;
         const auto& c = cell.corners;
         Singularity s, t;
         for (const double at : {0.1, 0.5, 0.9}) {
-            foreteller.along(position(cell.facet, c[0] + at * (c[1] - c[0])),
-                             position(cell.facet, c[3] + at * (c[2] - c[3])), s);
-            foreteller.along(position(cell.facet, c[0] + at * (c[3] - c[0])),
-                             position(cell.facet, c[1] + at * (c[2] - c[1])), t);
+            foretell_along(polygon, position(cell.facet, c[0] + at * (c[1] - c[0])),
+                           position(cell.facet, c[3] + at * (c[2] - c[3])), s);
+            foretell_along(polygon, position(cell.facet, c[0] + at * (c[3] - c[0])),
+                           position(cell.facet, c[1] + at * (c[2] - c[1])), t);
         }
         const double s_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[1])),
                                               position(cell.facet, 0.5 * (c[2] + c[3])));
