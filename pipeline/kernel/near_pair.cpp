@@ -281,7 +281,7 @@ private:
         direction.rate = nearest.rate;
         direction.place = nearest.place;
         direction.layer = nearest.layer;
-        constexpr int fewest = 2;
+        constexpr int fewest = 3;
         const double amplitude =
             2.0 * (2.0 + element_.basis.degree()); // on the ellipse through the singularity
         const double degree = std::log(amplitude / wanted) / std::max(log_rate, 1e-9);
