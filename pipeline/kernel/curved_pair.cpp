@@ -72,22 +72,22 @@ private:
     visibility::LoopCutter<Vec3> cutter_;
 };
 
-// Both on the inside of one sphere.
+// Both on the same side of one sphere.
 bool share_a_sphere(const ElementShape& a, const ElementShape& b) {
     constexpr double rounding = 1e-12; // of the radius
     if (!a.surface || !b.surface) return false;
     const model::Surface &s = *a.surface, &t = *b.surface;
     return s.type == model::SurfaceType::Sphere && t.type == model::SurfaceType::Sphere &&
-           s.orientation < 0.0 && t.orientation < 0.0 &&
-           std::abs(s.radius - t.radius) <= rounding * s.radius &&
+           s.orientation * t.orientation > 0.0 && std::abs(s.radius - t.radius) <= rounding * s.radius &&
            glm::distance(s.origin, t.origin) <= rounding * (s.radius + glm::length(s.origin));
 }
 
-// Only the constants have an integral other than 0.
-PairIntegral inside_a_sphere(const ElementShape& a, const ElementShape& b) {
+// On the inside only the constants have an integral other than 0; no point of the outside sees another one.
+PairIntegral on_a_sphere(const ElementShape& a, const ElementShape& b) {
     PairIntegral result{std::vector<double>(a.basis.size() * b.basis.size(), 0.0)};
     const double radius = a.surface->radius;
-    result.values[0] = std::sqrt(a.area * b.area) / (4.0 * std::numbers::pi * radius * radius);
+    if (a.surface->orientation < 0.0)
+        result.values[0] = std::sqrt(a.area * b.area) / (4.0 * std::numbers::pi * radius * radius);
     return result;
 }
 
@@ -296,7 +296,7 @@ private:
 } // namespace
 
 PairIntegral curved_pair(const ElementShape& a, const ElementShape& b, double tolerance, double floor) {
-    if (share_a_sphere(a, b)) return inside_a_sphere(a, b);
+    if (share_a_sphere(a, b)) return on_a_sphere(a, b);
     const bool swapped = second_is_outer(a, b);
     OuterResult found = swapped ? CurvedPair(b, a, tolerance, floor).integrate()
                                 : CurvedPair(a, b, tolerance, floor).integrate();

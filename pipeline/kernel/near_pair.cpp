@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <iterator>
 #include <limits>
 #include <utility>
 
 #include "geometry/quadrature.h"
+#include "kernel/singularity.h"
 
 namespace kinelux::kernel {
 
@@ -20,9 +20,6 @@ using geometry::Facet;
 using geometry::SurfaceNode;
 
 constexpr int most_nodes = 12;
-// Symmetric elements make equal candidates: the first is taken unless another is better by more than rounding, so that
-// an element's place does not choose.
-constexpr double clearly = 1.0 + 1e-6;
 
 // A bilinear quadrilateral in a facet's barycentric coordinates: s runs from the edge 0-1 to the edge 3-2, t along them.
 // A triangle has 2 = 3. Each direction has its Gauss rule, its error, and where it is divided.
@@ -32,6 +29,8 @@ struct Direction {
     double raw_error = 0.0;    ///< of the cell's values, before calibration [1]
     double calibration = 10.0; ///< what raw errors were found to be wrong by nearby
     double foretold = 0.0;     ///< error relative to the integrand's size, from where it is singular [1]
+    double place = 0.5;        ///< Singularity::place
+    double layer = std::numeric_limits<double>::infinity(); ///< Singularity::layer
     double division = 0.5;
 
     double error() const { return calibration * raw_error; }
@@ -43,6 +42,7 @@ struct Cell {
     Direction s, t;
     double wanted = 0.0; ///< foretold error x area that will do [m2]
     std::vector<double> values;
+    double brightest2 = 0.0; ///< largest square sum of inner integrals at the nodes [1/m2]
 
     double error() const { return s.error() + t.error(); }
 };
@@ -86,73 +86,6 @@ double norm2(std::span<const double> values) {
     return sum;
 }
 
-// The nearest singularity of the inner integral as seen along a line through a cell, from 0 to 1.
-struct Singularity {
-    double rate =
-        1e9; ///< by which Gauss errors fall per degree, >= 1; none = finite, for quotients of logarithms
-    double place = 0.5;                                        ///< its real part, in 0..1
-    double distance = std::numeric_limits<double>::infinity(); ///< of the singular point from the line [m]
-};
-
-class Foreteller {
-public:
-    explicit Foreteller(const InnerPolygon& polygon) : polygon_(polygon) {}
-
-    // Of the straight line from a to b.
-    void along(const Vec3& a, const Vec3& b, Singularity& nearest) const {
-        const Vec3 d = b - a;
-        for (std::size_t l = 0; l < polygon_.loops.size(); ++l) {
-            const std::span<const Vec3> loop = polygon_.loops[l];
-            for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
-                consider_corner(a - loop[j], d, nearest);
-                consider_edge(a - loop[j], d, loop[i] - loop[j], nearest);
-            }
-        }
-        consider_plane(a, d, nearest);
-    }
-
-private:
-    // |r0 + z d| = 0
-    static void consider_corner(const Vec3& r0, const Vec3& d, Singularity& nearest) {
-        const double d2 = glm::dot(d, d);
-        if (!(d2 > 0.0)) return;
-        const double real = -glm::dot(r0, d) / d2;
-        const double distance = glm::length(r0 + real * d);
-        consider({real, distance / std::sqrt(d2)}, distance, nearest);
-    }
-
-    // The distance from the line of the edge is 0, abreast of the edge itself.
-    static void consider_edge(const Vec3& r0, const Vec3& d, const Vec3& edge, Singularity& nearest) {
-        constexpr double parallel = 1e-12;
-        const double length2 = glm::dot(edge, edge);
-        if (!(length2 > 0.0)) return;
-        const Vec3 r_across = r0 - glm::dot(r0, edge) / length2 * edge,
-                   d_across = d - glm::dot(d, edge) / length2 * edge;
-        const double d2 = glm::dot(d_across, d_across);
-        if (d2 <= parallel * glm::dot(d, d)) return;
-        const double real = -glm::dot(r_across, d_across) / d2;
-        const double abreast = glm::dot(r0 + real * d, edge) / length2;
-        if (abreast < 0.0 || abreast > 1.0) return;
-        const double distance = glm::length(r_across + real * d_across);
-        consider({real, distance / std::sqrt(d2)}, distance, nearest);
-    }
-
-    void consider_plane(const Vec3& a, const Vec3& d, Singularity& nearest) const {
-        const double h0 = glm::dot(polygon_.normal, a - polygon_.origin),
-                     slope = glm::dot(polygon_.normal, d);
-        if (std::abs(slope) > 0.0) consider({-h0 / slope, 0.0}, 0.0, nearest);
-    }
-
-    static void consider(const std::complex<double>& z, double distance, Singularity& nearest) {
-        const std::complex<double> x = 2.0 * z - 1.0;
-        const std::complex<double> root = std::sqrt(x * x - 1.0);
-        const double rate = std::max(std::abs(x + root), std::abs(x - root));
-        if (clearly * rate < nearest.rate) nearest = {rate, std::clamp(z.real(), 0.0, 1.0), distance};
-    }
-
-    const InnerPolygon& polygon_;
-};
-
 class OuterIntegrator {
 public:
     OuterIntegrator(const ElementShape& element, std::size_t columns, PointGather& inner,
@@ -181,6 +114,7 @@ public:
             divide_dark_cells();
             refine();
         } else if (options_.settle) {
+            divide_blind_cells();
             settle();
         }
 
@@ -223,6 +157,45 @@ private:
             }
             cells_ = std::move(next);
         }
+    }
+
+    // Light may fall on a spot that all nodes of a cell miss, so that their values do not tell of it: where an edge or corner
+    // of the polygon all but touches the cell. A cell that is far brighter there than at its nodes is planned anew, by what
+    // such a spot would add to the block.
+    void divide_blind_cells() {
+        if (options_.polygon == nullptr) return;
+        constexpr double contrast2 = 4.0;
+        const double allowed =
+            options_.tolerance * std::max(std::sqrt(norm2(sum_of_cells())), options_.floor);
+        std::vector<Cell> next, blind;
+        for (Cell& cell : cells_) {
+            const double unsure = area_of(cell) * std::max(cell.s.foretold, cell.t.foretold);
+            const double bright2 = unsure > 0.0 ? brightness2(cell) : 0.0;
+            const double wanted = allowed * std::sqrt(element_.area / bright2);
+            if (bright2 <= contrast2 * cell.brightest2 || unsure <= wanted) {
+                next.push_back(std::move(cell));
+                continue;
+            }
+            cell.wanted = wanted;
+            blind.push_back(std::move(cell));
+        }
+        for (Cell& part : planned(std::move(blind))) {
+            evaluate(part);
+            next.push_back(std::move(part));
+        }
+        cells_ = std::move(next);
+    }
+
+    // Square sum of the inner integrals where a cell's directions are nearest to a singularity.
+    double brightness2(const Cell& cell) {
+        const auto& c = cell.corners;
+        const Vec2 bottom = glm::mix(c[0], c[1], cell.t.place), top = glm::mix(c[3], c[2], cell.t.place);
+        const Vec2 at = glm::mix(bottom, top, cell.s.place);
+        Vec2 parameter;
+        inner_.gather(geometry::node_at(element_, *cell.facet, {1.0 - at.x - at.y, at.x, at.y}, parameter),
+                      gathered_);
+        ++points_;
+        return norm2(gathered_);
     }
 
     static void append_cells(const OuterPiece& piece, std::vector<Cell>& cells) {
@@ -283,14 +256,14 @@ private:
     bool foretell(Cell& cell) const {
         const double area = area_of(cell);
         if (!(area > 0.0)) return true; // holds nothing
-        const Foreteller foreteller(*options_.polygon);
+        const InnerPolygon& polygon = *options_.polygon;
         const auto& c = cell.corners;
         Singularity s, t;
         for (const double at : {0.1, 0.5, 0.9}) {
-            foreteller.along(position(cell.facet, c[0] + at * (c[1] - c[0])),
-                             position(cell.facet, c[3] + at * (c[2] - c[3])), s);
-            foreteller.along(position(cell.facet, c[0] + at * (c[3] - c[0])),
-                             position(cell.facet, c[1] + at * (c[2] - c[1])), t);
+            foretell_along(polygon, position(cell.facet, c[0] + at * (c[1] - c[0])),
+                           position(cell.facet, c[3] + at * (c[2] - c[3])), s);
+            foretell_along(polygon, position(cell.facet, c[0] + at * (c[3] - c[0])),
+                           position(cell.facet, c[1] + at * (c[2] - c[1])), t);
         }
         const double s_length = glm::distance(position(cell.facet, 0.5 * (c[0] + c[1])),
                                               position(cell.facet, 0.5 * (c[2] + c[3])));
@@ -306,7 +279,9 @@ private:
         const int extra = element_.basis.degree() + 1; // of the basis and of the cell's map
         const double log_rate = std::log(nearest.rate);
         direction.rate = nearest.rate;
-        constexpr int fewest = 2;
+        direction.place = nearest.place;
+        direction.layer = nearest.layer;
+        constexpr int fewest = 3;
         const double amplitude =
             2.0 * (2.0 + element_.basis.degree()); // on the ellipse through the singularity
         const double degree = std::log(amplitude / wanted) / std::max(log_rate, 1e-9);
@@ -432,6 +407,7 @@ private:
         along_s_.assign(ns * size_, 0.0);
         along_t_.assign(nt * size_, 0.0);
         cell.values.assign(size_, 0.0);
+        cell.brightest2 = 0.0;
         const auto& c = cell.corners;
         for (std::size_t i = 0; i < ns; ++i)
             for (std::size_t j = 0; j < nt; ++j) {
@@ -439,6 +415,7 @@ private:
                 const Vec2 ds = c[3] + t_rule.nodes[j] * (c[2] - c[3]) - bottom;
                 const Vec2 dt = (1.0 - s_rule.nodes[i]) * (c[1] - c[0]) + s_rule.nodes[i] * (c[2] - c[3]);
                 set_entries(cell.facet, bottom + s_rule.nodes[i] * ds, std::abs(ds.x * dt.y - ds.y * dt.x));
+                cell.brightest2 = std::max(cell.brightest2, norm2(gathered_));
                 for (std::size_t e = 0; e < size_; ++e) {
                     along_s_[i * size_ + e] += t_rule.weights[j] * entries_[e];
                     along_t_[j * size_ + e] += s_rule.weights[i] * entries_[e];
@@ -455,7 +432,27 @@ private:
                 direction->raw_error = error_left(direction == &cell.s ? along_s_ : along_t_, *direction);
                 direction->calibration = 1.0;
             }
+            add_unseen_layers(cell);
         }
+    }
+
+    // Whether a singularity is so close to the cell that what happens there happens between two nodes.
+    static bool hides_layer(const Direction& direction) {
+        double to_node = 1.0;
+        for (const double node : geometry::gauss_rule(direction.nodes).nodes)
+            to_node = std::min(to_node, std::abs(node - direction.place));
+        return direction.layer < 0.5 * to_node;
+    }
+
+    // A jump that spreads over a layer as wide as a singularity is far is not in the coefficients when no node is in it.
+    void add_unseen_layers(Cell& cell) {
+        if (options_.polygon == nullptr || !(hides_layer(cell.s) || hides_layer(cell.t))) return;
+        const double jump = std::abs(std::sqrt(brightness2(cell)) - std::sqrt(cell.brightest2));
+        constexpr double ends = 2.0; // of the cell, where another layer may be
+        const double per_share = ends * jump * area_of(cell) / std::sqrt(element_.area);
+        for (Direction* direction : {&cell.s, &cell.t})
+            if (hides_layer(*direction))
+                direction->raw_error = std::max(direction->raw_error, direction->layer * per_share);
     }
 
     // entries_ = phi_k(x) gather_l(x) times the area per (s, t) at one point.

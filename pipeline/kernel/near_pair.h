@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/element_shape.h"
-#include "visibility/loops.h"
+#include "kernel/singularity.h"
 
 namespace kinelux::kernel {
 
@@ -23,13 +23,6 @@ public:
 struct OuterPiece {
     const geometry::Facet* facet;
     std::vector<Vec2> corners;
-};
-
-/// Where the inner integral over a flat polygon, as a function of the outer point, is not analytic: at the polygon's
-/// edges and corners, and weakly in its plane.
-struct InnerPolygon {
-    const visibility::Loops3& loops; ///< [m]
-    Vec3 origin, normal;             ///< of its plane
 };
 
 struct OuterOptions {

@@ -459,7 +459,7 @@ private:
     // The inner integral is exact on the larger polygon, the outer one runs over the smaller.
     void near(Sight sight) {
         constexpr double equal = 1.0 + 1e-9; // rounding does not choose between elements of one size
-        const bool swapped = a_.radius > equal * b_.radius;
+        const bool swapped = a_.area > equal * b_.area;
         const ElementShape& outer = swapped ? b_ : a_;
         const ElementShape& inner = swapped ? a_ : b_;
         const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);

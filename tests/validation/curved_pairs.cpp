@@ -348,7 +348,8 @@ CurvedJudgement judge_curved(const CurvedRecipe& recipe, double tolerance) {
     const double scale = 1.0 / std::max(judgement.norm, floor);
     judgement.error = scale * std::sqrt(error2);
     judgement.estimate = scale * block.error;
-    judgement.uncertainty = scale * std::sqrt(disagreement2);
+    // An element that faces itself has but one side: there the reference's own estimate says more.
+    judgement.uncertainty = scale * std::max(std::sqrt(disagreement2), pair.itself ? from_a.error : 0.0);
     return judgement;
 }
 

@@ -49,8 +49,10 @@ struct CurvedJudgement {
     CurvedRecipe recipe;
     int degree_a = 0, degree_b = 0;
     double error = 0.0, estimate = 0.0;
-    double uncertainty = 0.0; ///< of the reference: difference between the integrals from either side
-    double norm = 0.0;        ///< not relative [1]
+    double uncertainty =
+        0.0; ///< of the reference: difference between the integrals from either side, or its estimate
+             ///< where the element faces itself
+    double norm = 0.0;                             ///< not relative [1]
     double seconds = 0.0, reference_seconds = 0.0; ///< of wall time
     double proved_error() const { return error > uncertainty ? error - uncertainty : 0.0; }
 };

@@ -19,11 +19,11 @@ namespace {
 constexpr double honest_share = 1.0 / 3.0; ///< of the true error that the estimate must reach
 constexpr double rounding = 1e-12;         ///< errors below it are not asked about
 
-// What the reference's cells may be off for a block of a tolerance. Many of them add up to one block, the more the finer
-// it has to be.
+// What the reference's cells may be off for a block of a tolerance at first. Many of them add up to one block, the more
+// the finer it has to be.
 double cell_tolerance(double tolerance) {
-    constexpr double share = 0.1, few_cells = 1e-3, finest = 1e-8;
-    return std::max(finest, share * tolerance * std::min(1.0, std::sqrt(tolerance / few_cells)));
+    constexpr double share = 0.1, few_cells = 1e-3;
+    return share * tolerance * std::min(1.0, std::sqrt(tolerance / few_cells));
 }
 
 // CPU time of this thread: what else the machine does does not count.
@@ -109,11 +109,17 @@ Judgement judge(const PairRecipe& recipe, double tolerance) {
         kernel::transport(pair.a, pair.b, nothing, {.tolerance = tolerance, .occlusion = false});
     judgement.seconds = cpu_seconds() - start;
     start = cpu_seconds();
-    const auto reference = support::pair_reference(pair.a, pair.b, cell_tolerance(tolerance));
+    const double largest = std::sqrt(std::min(pair.a.area, pair.b.area) / std::max(pair.a.area, pair.b.area));
+    support::PairReference reference;
+    double scale = 0.0;
+    constexpr double finer = 0.03, finest = 1e-8;
+    for (double cell = cell_tolerance(tolerance);; cell *= finer) {
+        reference = support::pair_reference(pair.a, pair.b, std::max(cell, finest));
+        scale = 1.0 / std::max(reference.norm, negligible_share * largest);
+        if (cell <= finest || scale * reference.disagreement <= judge_share * tolerance) break;
+    }
     judgement.reference_seconds = cpu_seconds() - start;
     judgement.norm = reference.norm;
-    const double largest = std::sqrt(std::min(pair.a.area, pair.b.area) / std::max(pair.a.area, pair.b.area));
-    const double scale = 1.0 / std::max(reference.norm, negligible_share * largest);
     judgement.error = scale * difference(block.values, reference.values);
     judgement.estimate = scale * block.error;
     judgement.uncertainty = scale * reference.disagreement;

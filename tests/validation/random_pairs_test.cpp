@@ -14,8 +14,10 @@ struct Series {
     double tolerance;
     std::uint64_t seed, count;
 };
-constexpr Series all_series[] = {{1e-2, 20, 600}, {1e-2, 21, 600}, {1e-3, 22, 300},
-                                 {1e-3, 23, 300}, {1e-4, 24, 168}, {1e-6, 25, 48}};
+constexpr Series all_series[] = {
+    {1e-2, 30, 200}, {1e-2, 31, 200}, {1e-2, 32, 200}, {1e-2, 33, 200}, {1e-2, 34, 200}, {1e-2, 35, 200},
+    {1e-3, 40, 100}, {1e-3, 41, 100}, {1e-3, 42, 100}, {1e-3, 43, 100}, {1e-3, 44, 100}, {1e-3, 45, 100},
+    {1e-4, 50, 56},  {1e-4, 51, 56},  {1e-4, 52, 56},  {1e-6, 60, 24},  {1e-6, 61, 24}};
 
 constexpr double least_share_within = 0.99, least_share_judged = 0.95;
 
