@@ -12,6 +12,7 @@
 #include "kernel/facet_sum.h"
 #include "kernel/far_pair.h"
 #include "kernel/near_pair.h"
+#include "kernel/outer_pieces.h"
 #include "kernel/polygon_moments.h"
 #include "kernel/surface_cells.h"
 
@@ -105,13 +106,6 @@ double difference(std::span<const double> p, std::span<const double> q) {
     double sum = 0.0;
     for (std::size_t k = 0; k < p.size(); ++k) sum += (p[k] - q[k]) * (p[k] - q[k]);
     return std::sqrt(sum);
-}
-
-Vec2 barycentric(const Facet& facet, const Vec3& point) {
-    const Vec3 e1 = facet.corners[1] - facet.corners[0], e2 = facet.corners[2] - facet.corners[0];
-    const Vec3 d = point - facet.corners[0];
-    return {glm::dot(glm::cross(d, e2), facet.normal) / (2.0 * facet.area),
-            glm::dot(glm::cross(e1, d), facet.normal) / (2.0 * facet.area)};
 }
 
 // Two facets whose domains make a parallelogram, as one piece of the first.
