@@ -2,6 +2,7 @@
 #include "curved_pairs.h"
 
 #include <cstdlib>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -18,6 +19,10 @@ struct Series {
     std::uint64_t seed;
     std::size_t count;
 };
+
+void PrintTo(const Series& series, std::ostream* out) {
+    *out << "tolerance_" << series.tolerance << "_seed_" << series.seed;
+}
 constexpr Series all_series[] = {{1e-2, 1, 56}, {1e-2, 2, 56}, {1e-3, 3, 35}};
 
 // KINELUX_PAIRS=560 judges as many pairs per series; few are enough to notice a change.
