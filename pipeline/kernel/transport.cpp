@@ -441,7 +441,13 @@ private:
     }
 
     TransportBlock finished() {
-        if (!(frobenius_norm(block_.values) > 0.0)) return {.rays = block_.rays};
+        const double norm = frobenius_norm(block_.values);
+        if (!(norm > 0.0)) return {.rays = block_.rays};
+        // No block is larger than one that sends all light from the smaller element to the other, for each function: no
+        // error is larger than that and what was found together.
+        const double functions = std::sqrt(static_cast<double>(std::min(a_.basis.size(), b_.basis.size())));
+        const double ratio = std::sqrt(std::min(a_.area, b_.area) / std::max(a_.area, b_.area));
+        block_.error = std::min(block_.error, norm + (functions > 1.0 ? functions : ratio));
         return std::move(block_);
     }
 
