@@ -128,7 +128,8 @@ void add_tilted(std::vector<ClosedFormCase>& cases) {
 // The part of one convex polygon in another, both in one plane z = constant, counter-clockwise from above.
 Polygon common_part(Polygon polygon, std::span<const Vec3> window) {
     for (std::size_t i = 0; i < window.size() && !polygon.empty(); ++i) {
-        const Vec3 from = window[i], along = window[(i + 1) % window.size()] - from;
+        const Vec3& from = window[i];
+        const Vec3 along = window[(i + 1) % window.size()] - from;
         const auto inside = [&](const Vec3& p) {
             return along.x * (p.y - from.y) - along.y * (p.x - from.x);
         };
@@ -156,7 +157,8 @@ double factor_behind(const Polygon& target, const Polygon& blocker) {
     double sum = 0.0;
     for (int i = 0; i < 2 * cells; ++i)
         for (int j = 0; j < 2 * cells; ++j) {
-            const Vec3 x((i / 2 + rule.nodes[i % 2]) / cells, (j / 2 + rule.nodes[j % 2]) / cells, 0.0);
+            const int row = i / 2, column = j / 2;
+            const Vec3 x((row + rule.nodes[i % 2]) / cells, (column + rule.nodes[j % 2]) / cells, 0.0);
             Polygon shadow;
             for (const Vec3& p : blocker) shadow.push_back(x + 2.0 * (p - x));
             sum += seen(x, target) - seen(x, common_part(target, shadow));

@@ -127,7 +127,8 @@ SmallBody random_body(Dice& dice) {
         if (i == n / 2) body.half = body.small.triangles.size();
         for (int j = 0; j < n; ++j) {
             const auto at = [&](int di, int dj) {
-                return grid[static_cast<std::size_t>((i + di) * (n + 1) + j + dj)];
+                const int point = (i + di) * (n + 1) + j + dj;
+                return grid[static_cast<std::size_t>(point)];
             };
             add(at(0, 0), at(1, 0), at(1, 1));
             add(at(0, 0), at(1, 1), at(0, 1));

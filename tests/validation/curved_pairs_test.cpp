@@ -20,8 +20,8 @@ struct Series {
     std::size_t count;
 };
 
-void PrintTo(const Series& series, std::ostream* out) {
-    *out << "tolerance_" << series.tolerance << "_seed_" << series.seed;
+std::ostream& operator<<(std::ostream& out, const Series& series) {
+    return out << "tolerance_" << series.tolerance << "_seed_" << series.seed;
 }
 constexpr Series all_series[] = {{1e-2, 1, 56}, {1e-2, 2, 56}, {1e-3, 3, 35}};
 

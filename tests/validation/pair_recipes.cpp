@@ -104,7 +104,10 @@ Outline mirrored(Outline outline) {
 }
 
 Flat mirrored(Flat flat) {
-    if (flat.framed) return shifted(std::move(flat), Vec2(-flat.outline[1].x, 0.0));
+    if (flat.framed) {
+        const Vec2 shift(-flat.outline[1].x, 0.0);
+        return shifted(std::move(flat), shift);
+    }
     flat.outline = mirrored(std::move(flat.outline));
     return flat;
 }

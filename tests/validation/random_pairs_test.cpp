@@ -16,8 +16,8 @@ struct Series {
     std::uint64_t seed, count;
 };
 
-void PrintTo(const Series& series, std::ostream* out) {
-    *out << "tolerance_" << series.tolerance << "_seed_" << series.seed;
+std::ostream& operator<<(std::ostream& out, const Series& series) {
+    return out << "tolerance_" << series.tolerance << "_seed_" << series.seed;
 }
 
 constexpr Series all_series[] = {{1e-2, 30, 200}, {1e-2, 31, 200}, {1e-2, 32, 200}, {1e-2, 33, 200},
