@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/sequence.h"
+#include "kernel/far_pair.h"
 #include "kernel/polygon_irradiance.h"
 #include "support/shapes.h"
 
@@ -137,48 +138,15 @@ TEST(PolygonIrradiance, of_a_half_space_below_the_horizon_is_cut) {
     EXPECT_EQ(point_to_polygon(Vec3(1, 0, 0), Vec3(0, 0, 1), wall), 0.0) << "in its plane";
 }
 
-// Two triangles, a lower one and an upper one that all but lies on it, front to front, each its own cluster; turned so
-// that coordinates are rounded.
-std::vector<geometry::ElementShape> touching_clusters(double gap) {
-    model::PatchSet set;
-    model::ClusterTree tree;
-    const Quat turn = glm::normalize(Quat(0.9, 0.1, 0.3, 0.2));
-    const std::vector<Vec3> corners{Vec3(0, 0, 0),   Vec3(1, 0, 0.1), Vec3(0, 1, 0),
-                                    Vec3(0, 0, gap), Vec3(0, 1, gap), Vec3(1, 0, 0.1 + gap)};
-    for (const Vec3& corner : corners) set.small.points.push_back(turn * corner);
-    for (std::uint32_t t = 0; t < 2; ++t) {
-        // Three triangles each, so that they are clusters of more than one plane.
-        model::Cluster cluster{.normal_spread_deg = 180.0};
-        const auto apex = static_cast<std::uint32_t>(set.small.points.size());
-        set.small.points.push_back(turn * Vec3(0.3, 0.3, t == 0 ? -0.2 : 0.3 + gap));
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            cluster.triangles.push_back(static_cast<std::uint32_t>(set.small.triangles.size()));
-            set.small.triangles.push_back(k == 0 ? model::Triangle{3 * t, 3 * t + 1, 3 * t + 2}
-                                                 : model::Triangle{3 * t + k - 1, apex, 3 * t + k});
-            set.small.objects.emplace_back(0);
-            set.small.materials.emplace_back(0);
-        }
-        tree.clusters.push_back(cluster);
-        model::Element element;
-        element.cluster = ClusterId(t);
-        tree.elements.push_back(element);
-    }
-    return geometry::element_shapes(set, tree, 0, 0);
-}
-
-TEST(Transport, of_clusters_that_all_but_touch_sends_no_more_than_all_and_errs_by_no_more_than_that) {
-    for (const double gap : {1e-3, 1e-9, 1e-15, 0.0})
-        for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
-            const auto shapes = touching_clusters(gap);
-            const visibility::Occluders nothing{std::vector<visibility::Body>()};
-            const auto block = transport(shapes[0], shapes[1], nothing, {.tolerance = tolerance});
-            const double most = std::sqrt(std::min(shapes[0].area, shapes[1].area) /
-                                          std::max(shapes[0].area, shapes[1].area));
-            for (const double value : block.values) {
-                EXPECT_GE(value, 0.0);
-                EXPECT_LE(value, (1.0 + tolerance) * most) << "gap " << gap;
-            }
-            EXPECT_LE(block.error, 2.0 * (1.0 + tolerance) * most) << "gap " << gap;
+TEST(BoundedKernel, never_sends_more_than_what_leaves_a_node_however_near_the_other_is) {
+    for (const double gap : {1.0, 1e-3, 1e-9, 1e-17})
+        for (const double weight : {1e-6, 1.0}) {
+            const geometry::SurfaceNode x{Vec3(0), Vec3(0, 0, 1), weight};
+            const geometry::SurfaceNode y{Vec3(0, 0, gap), Vec3(0, 0, -1), 0.5};
+            const double kernel = bounded_kernel(x, y);
+            EXPECT_GT(kernel, 0.0);
+            EXPECT_LE(kernel * x.weight, 1.0) << "gap " << gap;
+            EXPECT_LE(kernel * y.weight, 1.0) << "gap " << gap;
         }
 }
 
