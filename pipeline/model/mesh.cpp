@@ -52,8 +52,15 @@ void check(const Mesh& mesh, const std::string& where) {
     if (mesh.materials.size() != count)
         fail(std::to_string(count) + " triangles but " + std::to_string(mesh.materials.size()) +
              " materials");
-    if (!matches(mesh.two_sided.size()) || !matches(mesh.source_faces.size()))
+    if (!matches(mesh.two_sided.size()) || !matches(mesh.source_faces.size()) ||
+        mesh.surface_of.size() != (mesh.surfaces.empty() ? 0 : count))
         fail("the lists kept per triangle differ in length");
+    for (std::size_t s = 0; s < mesh.surfaces.size(); ++s)
+        check(mesh.surfaces[s], where + ": surface " + std::to_string(s));
+    for (const std::uint32_t s : mesh.surface_of)
+        if (s != no_surface && s >= mesh.surfaces.size())
+            fail("a triangle names surface " + std::to_string(s) + " of " +
+                 std::to_string(mesh.surfaces.size()));
     for (std::size_t i = 0; i < mesh.points.size(); ++i)
         if (!is_finite(mesh.points[i]))
             fail("vertex " + std::to_string(i) + " has a coordinate that is not finite");

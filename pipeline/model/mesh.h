@@ -8,6 +8,7 @@
 
 #include "core/ids.h"
 #include "core/vec.h"
+#include "model/surface.h"
 
 namespace kinelux::model {
 
@@ -23,7 +24,14 @@ struct Mesh {
         two_sided; ///< one per triangle, 1 = both sides exchange light; empty until cleaned
     std::vector<std::uint32_t>
         source_faces; ///< one per triangle: number of the face in the file it came from
+    std::vector<Surface>
+        surfaces; ///< exact surfaces of the file's faces, in the mesh's coordinates; empty: none stated
+    std::vector<std::uint32_t>
+        surface_of; ///< one per triangle: into `surfaces`, or no_surface; empty where `surfaces` is. The corners
+        ///< lie on the surface; `orientation` is such that its normal points to the triangle's front
 };
+
+constexpr std::uint32_t no_surface = 0xffffffffU; ///< of a triangle that no exact surface is known of
 
 double area(const Mesh& mesh);                                ///< [m2]
 double signed_volume(const Mesh& mesh);                       ///< [m3]; meaningful where the mesh is closed

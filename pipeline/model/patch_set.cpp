@@ -27,23 +27,9 @@ void check_ids(const std::string& where, ObjectId object, MaterialId material, c
                         std::to_string(scene.materials.size()));
 }
 
-void check_surface(const std::string& where, const Surface& s) {
-    const bool numbers = finite(s.origin) && finite(s.axis_u) && finite(s.axis_v) && finite(s.axis_w) &&
-                         std::isfinite(s.radius) && std::isfinite(s.minor_radius) &&
-                         std::isfinite(s.half_angle_rad);
-    if (!numbers) fail(where, "its surface has a number that is not finite");
-    if (s.orientation != 1.0 && s.orientation != -1.0) fail(where, "its orientation is neither 1 nor -1");
-    for (const Vec3& corner : s.corners) {
-        if (!finite(corner)) fail(where, "a corner of its surface is not finite");
-    }
-    for (const Vec3& pole : s.bspline.poles) {
-        if (!finite(pole)) fail(where, "a pole of its surface is not finite");
-    }
-}
-
 void check_patch(const std::string& where, const Patch& patch, const Scene& scene) {
     check_ids(where, patch.object, patch.material, scene);
-    check_surface(where, patch.surface);
+    check(patch.surface, where);
     if (patch.triangles.empty()) fail(where, "has no triangles");
     for (const Vec2& p : patch.points) {
         if (!finite(p)) fail(where, "a parameter of its domain is not finite");

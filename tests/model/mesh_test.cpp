@@ -66,5 +66,18 @@ TEST(MeshTest, check_refuses_bad_indices_lengths_and_coordinates) {
     }
 }
 
+TEST(MeshTest, check_wants_a_surface_of_every_triangle_where_any_is_stated) {
+    Mesh mesh = tetrahedron(Vec3(0.0));
+    mesh.surfaces = {Surface{}};
+    EXPECT_THROW(check(mesh, "body"), core::GeometryError);
+    mesh.surface_of = {0, no_surface, no_surface, no_surface};
+    EXPECT_NO_THROW(check(mesh, "body"));
+    mesh.surface_of[1] = 1;
+    EXPECT_THROW(check(mesh, "body"), core::GeometryError);
+    mesh.surface_of[1] = 0;
+    mesh.surfaces[0].orientation = 0.0;
+    EXPECT_THROW(check(mesh, "body"), core::GeometryError);
+}
+
 } // namespace
 } // namespace kinelux::model
