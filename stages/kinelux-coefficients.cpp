@@ -7,6 +7,7 @@
 #include "cli/stage.h"
 #include "light_case.h"
 #include "reports.h"
+#include "savers.h"
 
 using namespace kinelux;
 
@@ -58,15 +59,20 @@ int main(int argc, char** argv) {
                          .help = "points per block and scrambling, of 8, where points are chosen",
                          .low = 1,
                          .high = 1u << 28u});
+    stage.add_resume();
+    double save_every_s = stages::default_save_every_s;
+    stage.options().add(stages::save_every_row(save_every_s, "the block rows"));
     return stage.run(argc, argv, [&](cli::Stage&) {
         const auto light = stage.step("read", [&] { return stages::read_light_case(stage.folder()); });
         const auto blocks = stage.step("coefficients", [&] {
             kernel::TransportOptions options = light.transport_options(seed);
             options.integration = integration_named(integration);
             options.samples = samples;
-            return coefficients::compute_coefficients(
-                light.elements, light.scene, light.plan, light.occluders, options,
-                memory_limit.value_or(cli::default_memory_limit_mib()), {.use = grouping(groups)});
+            stages::CoefficientsSaver saver(stage, save_every_s);
+            return coefficients::compute_coefficients(light.elements, light.scene, light.plan,
+                                                      light.occluders, options,
+                                                      memory_limit.value_or(cli::default_memory_limit_mib()),
+                                                      {.use = grouping(groups)}, saver.checkpoint());
         });
         stage.step("write", [&] { stage.folder().write_coefficients(blocks); });
         stages::report_coefficients(blocks, light, stage);

@@ -10,8 +10,8 @@
 #include "engines.h"
 #include "light_case.h"
 #include "reports.h"
+#include "savers.h"
 #include "solve/animation.h"
-#include "solve_saver.h"
 
 using namespace kinelux;
 
@@ -21,7 +21,7 @@ struct Options {
     std::string method = "automatic", start = "extrapolated";
     std::optional<double> tolerance;
     double max_sweeps = solve::SolveOptions{}.max_sweeps;
-    double save_every_s = 30.0;
+    double save_every_s = stages::default_save_every_s;
     std::string engine = "auto";
 
     explicit Options(cli::OptionTable& table) {
@@ -48,13 +48,7 @@ struct Options {
                    .help = "of the solver per frame",
                    .low = 1,
                    .high = 1e9});
-        table.add({.member = &save_every_s,
-                   .flags = "--save-every",
-                   .help = "from one save of the frames that are done to the next; 0 = after each",
-                   .unit = "s",
-                   .low = 0,
-                   .high = 1e9,
-                   .decides = cli::Decides::Manners});
+        table.add(stages::save_every_row(save_every_s, "the frames"));
         table.add(stages::engine_row(engine));
     }
     solve::SolveOptions for_target(double target) const {

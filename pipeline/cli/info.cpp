@@ -139,6 +139,15 @@ std::string of_coefficients(const io::Hdf5Reader& file) {
     return facts.text();
 }
 
+std::string of_coefficients_so_far(const io::Hdf5Reader& file) {
+    const model::CoefficientsSoFar so_far = io::get_coefficients_so_far(file);
+    Facts facts;
+    facts.add("elements", so_far.coefficients.layout.elements());
+    facts.add("rows done", so_far.rows);
+    facts.add("static blocks", so_far.coefficients.static_blocks.entries.size());
+    return facts.text();
+}
+
 std::string of_solution(const io::Hdf5Reader& file) {
     const model::Solution solution = io::get_solution(file);
     Facts facts;
@@ -164,10 +173,11 @@ std::string of_hdf5(const fs::path& path) {
     const io::FileHeader header{
         .format = file.text("format"), .version = file.integer("version"), .program = file.text("program")};
     using Describe = std::string (*)(const io::Hdf5Reader&);
-    static constexpr std::array<std::pair<const char*, Describe>, 5> kinds{
+    static constexpr std::array<std::pair<const char*, Describe>, 6> kinds{
         {{"kinelux-patches", of_patches},
          {"kinelux-clusters", of_clusters},
          {"kinelux-coefficients", of_coefficients},
+         {"kinelux-coefficients-so-far", of_coefficients_so_far},
          {"kinelux-solution", of_solution},
          {"kinelux-solution-so-far", of_solution}}};
     for (const auto& [format, describe] : kinds)

@@ -211,6 +211,45 @@ void group_distant_pairs(std::span<const ElementShape> elements, const model::Sc
     builder.restrict_to(std::move(pairs.near));
 }
 
+void append(const Row& row, model::Coefficients& result) {
+    model::BlockSet& blocks = result.static_blocks;
+    const std::uint64_t base = blocks.values.size();
+    for (model::BlockEntry entry : row.entries) {
+        entry.offset += base;
+        blocks.entries.push_back(entry);
+    }
+    blocks.values.insert(blocks.values.end(), row.values.begin(), row.values.end());
+    result.moving_pairs.insert(result.moving_pairs.end(), row.moving.begin(), row.moving.end());
+    result.crossed_pairs.insert(result.crossed_pairs.end(), row.crossed.begin(), row.crossed.end());
+    result.pairs_examined += static_cast<double>(row.examined);
+    result.rays_cast += static_cast<double>(row.rays);
+}
+
+// Computes all rows that are not there yet, a batch at a time, and hands what is done to the checkpoint after each.
+void add_rows(const RowBuilder& builder, std::size_t count, Checkpoint checkpoint,
+              model::Coefficients& result) {
+    constexpr std::size_t batches = 50, least_rows = 16; // threads wait for each other at the end of a batch
+    model::CoefficientsSoFar so_far = std::move(checkpoint.from);
+    if (so_far.rows > 0)
+        so_far.coefficients.hierarchy = std::move(result.hierarchy);
+    else
+        so_far.coefficients = std::move(result);
+    core::Progress progress("coefficients", count);
+    progress.advance(so_far.rows);
+    std::vector<Row> rows;
+    while (so_far.rows < count) {
+        rows.assign(std::min(std::max(count / batches, least_rows), count - so_far.rows), {});
+        core::parallel_for(rows.size(), [&](std::size_t k) {
+            rows[k] = builder.build(so_far.rows + k);
+            progress.advance();
+        });
+        for (const Row& row : rows) append(row, so_far.coefficients);
+        so_far.rows += rows.size();
+        if (checkpoint.save && so_far.rows < count) checkpoint.save(so_far);
+    }
+    result = std::move(so_far.coefficients);
+}
+
 // An upper bound: of all pairs while these fit the limit, else of those that may exchange light.
 double memory_bound_mib(std::span<const ElementShape> elements, const RowBuilder& builder, double limit_mib) {
     constexpr double mib = 1024.0 * 1024.0;
@@ -293,7 +332,7 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
                                          const model::Scene& scene, const model::Plan& plan,
                                          const visibility::Occluders& occluders,
                                          const kernel::TransportOptions& options, double memory_limit_mib,
-                                         const GroupingOptions& grouping) {
+                                         const GroupingOptions& grouping, Checkpoint checkpoint) {
     RowBuilder builder(rest_elements, scene, plan, occluders, options);
     double needed_mib = memory_bound_mib(rest_elements, builder, memory_limit_mib);
     const bool large = rest_elements.size() > grouping.most_elements || needed_mib > memory_limit_mib;
@@ -309,36 +348,9 @@ model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elem
                                               "accuracy, a larger element size, or raise --memory-limit",
                                               rest_elements.size(), needed_mib, memory_limit_mib));
 
-    std::vector<Row> rows(rest_elements.size());
-    core::Progress progress("coefficients", rows.size());
-    core::parallel_for(rows.size(), [&](std::size_t i) {
-        rows[i] = builder.build(i);
-        progress.advance();
-    });
-
     result.layout = unknown_layout(rest_elements);
     result.degree = plan.degree;
-    std::size_t values = 0, entries = 0;
-    for (const Row& row : rows) {
-        values += row.values.size();
-        entries += row.entries.size();
-    }
-    result.static_blocks.values.reserve(values);
-    result.static_blocks.entries.reserve(entries);
-    for (Row& row : rows) {
-        const std::uint64_t base = result.static_blocks.values.size();
-        for (model::BlockEntry entry : row.entries) {
-            entry.offset += base;
-            result.static_blocks.entries.push_back(entry);
-        }
-        result.static_blocks.values.insert(result.static_blocks.values.end(), row.values.begin(),
-                                           row.values.end());
-        result.moving_pairs.insert(result.moving_pairs.end(), row.moving.begin(), row.moving.end());
-        result.crossed_pairs.insert(result.crossed_pairs.end(), row.crossed.begin(), row.crossed.end());
-        result.pairs_examined += static_cast<double>(row.examined);
-        result.rays_cast += static_cast<double>(row.rays);
-        row = Row{};
-    }
+    add_rows(builder, rest_elements.size(), std::move(checkpoint), result);
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,12 +38,19 @@ struct GroupingOptions {
         0.5; ///< of the scene's accuracy that links may take, the rest is the blocks' and the basis' [1]
 };
 
+/// Where a computation that was interrupted goes on, and who keeps what this one has done.
+struct Checkpoint {
+    model::CoefficientsSoFar from; ///< of the same scene and options; empty: from the beginning
+    std::function<void(const model::CoefficientsSoFar&)>
+        save; ///< called between rows, by one thread; may throw to stop
+};
+
 /// The blocks of all pairs at rest relative to each other, with the occlusion by bodies that never move; and the lists
 /// of pairs that change: bodies in relative motion, and pairs at rest that a moving body may come between (judged by the
 /// pair's bounding spheres and the mover's bounds over all frames), or on one body that others reach into. In large
 /// scenes links between groups take the
 /// place of the blocks of distant pairs at rest that no moving body can come between (docs/hierarchy.md). Rows are computed in parallel; the result does
-/// not depend on threads.
+/// not depend on threads, nor on where it was interrupted (links are made anew then).
 /// @param rest_elements  at rest, in order of ElementId
 /// @param scene          settled, as clean leaves it (geometry::settle_motions): bodies on one motion, and no others,
 ///                       keep their distance
@@ -51,7 +59,7 @@ model::Coefficients compute_coefficients(std::span<const geometry::ElementShape>
                                          const model::Scene& scene, const model::Plan& plan,
                                          const visibility::Occluders& occluders,
                                          const kernel::TransportOptions& options, double memory_limit_mib,
-                                         const GroupingOptions& grouping = {});
+                                         const GroupingOptions& grouping = {}, Checkpoint checkpoint = {});
 
 /// Form factors between groups of elements (objects, or patches): F_ab is the share of what leaves a uniformly that
 /// reaches b; rows of a closed scene sum to 1.

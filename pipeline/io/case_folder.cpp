@@ -6,6 +6,7 @@
 #include <iterator>
 #include <new>
 #include <stdexcept>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,8 @@ constexpr FileKind plan_kind{"plan.json", "kinelux-plan", "kinelux-plan", &clust
 constexpr FileKind coefficients_kind{"coefficients.h5", "kinelux-coefficients", "kinelux-coefficients",
                                      &plan_kind};
 constexpr FileKind solution_kind{"solution.h5", "kinelux-solution", "kinelux-solve", &coefficients_kind};
+constexpr FileKind rows_kind{"coefficients-so-far.h5", "kinelux-coefficients-so-far", "kinelux-coefficients",
+                             &plan_kind};
 constexpr FileKind so_far_kind{"solution-so-far.h5", "kinelux-solution-so-far", "kinelux-solve",
                                &coefficients_kind};
 
@@ -156,6 +159,19 @@ void check_layout(const model::UnknownLayout& layout) {
             throw core::FileError(fmt::format("element {} ends before it starts", e));
 }
 
+/// What an interrupted run has left under this key, if any.
+template <class Get, class SoFar = std::invoke_result_t<Get, const Hdf5Reader&>>
+std::optional<SoFar> read_so_far(const FileKind& kind, const fs::path& folder, const std::string& key,
+                                 Get get) {
+    if (!fs::is_regular_file(folder / kind.name)) return std::nullopt;
+    return guarded(kind, folder, [&]() -> std::optional<SoFar> {
+        check_header(read_header(kind, folder), kind);
+        const Hdf5Reader file(folder / kind.name);
+        if (file.text("key") != key) return std::nullopt;
+        return get(file);
+    });
+}
+
 } // namespace
 
 CaseFolder::CaseFolder(fs::path folder, bool create) : folder_(std::move(folder)) {
@@ -247,6 +263,8 @@ void CaseFolder::write_plan(const model::Plan& plan) const {
 
 void CaseFolder::write_coefficients(const model::Coefficients& coefficients) const {
     write_hdf5(coefficients_kind, folder_, [&](Hdf5Writer& file) { put_coefficients(file, coefficients); });
+    std::error_code ignored;
+    fs::remove(folder_ / rows_kind.name, ignored);
 }
 
 void CaseFolder::write_solution(const model::Solution& solution) const {
@@ -264,12 +282,22 @@ void CaseFolder::write_solution_so_far(const model::Solution& solution, const mo
 }
 
 std::optional<model::SolutionSoFar> CaseFolder::read_solution_so_far(const std::string& key) const {
-    if (!fs::is_regular_file(folder_ / so_far_kind.name)) return std::nullopt;
-    return guarded(so_far_kind, folder_, [&]() -> std::optional<model::SolutionSoFar> {
-        check_header(read_header(so_far_kind, folder_), so_far_kind);
-        const Hdf5Reader file(folder_ / so_far_kind.name);
-        if (file.text("key") != key) return std::nullopt;
-        return get_solution_so_far(file);
+    return read_so_far(so_far_kind, folder_, key, get_solution_so_far);
+}
+
+void CaseFolder::write_coefficients_so_far(const model::CoefficientsSoFar& so_far,
+                                           const std::string& key) const {
+    write_hdf5(rows_kind, folder_, [&](Hdf5Writer& file) {
+        file.attribute("key", key);
+        put_coefficients_so_far(file, so_far);
+    });
+}
+
+std::optional<model::CoefficientsSoFar> CaseFolder::read_coefficients_so_far(const std::string& key) const {
+    return read_so_far(rows_kind, folder_, key, [](const Hdf5Reader& file) {
+        model::CoefficientsSoFar so_far = get_coefficients_so_far(file);
+        model::check(so_far.coefficients);
+        return so_far;
     });
 }
 

@@ -43,8 +43,16 @@ public:
     void write_patches(const model::PatchSet& patches, const model::Scene& scene) const;
     void write_clusters(const model::ClusterTree& tree, const model::PatchSet& patches) const;
     void write_plan(const model::Plan& plan) const;
-    void write_coefficients(const model::Coefficients& coefficients) const;
-    void write_solution(const model::Solution& solution) const; ///< and removes solution-so-far.h5
+    void
+    write_coefficients(const model::Coefficients& coefficients) const; ///< and removes coefficients-so-far.h5
+    void write_solution(const model::Solution& solution) const;        ///< and removes solution-so-far.h5
+
+    /// What an interrupted computation of the coefficients has left: coefficients-so-far.h5.
+    /// @param key  a hash of all that decides the result
+    void write_coefficients_so_far(const model::CoefficientsSoFar& so_far, const std::string& key) const;
+    /// @return  nothing when there is none, or one with another key
+    /// @throws FileError  damaged
+    std::optional<model::CoefficientsSoFar> read_coefficients_so_far(const std::string& key) const;
 
     /// What an interrupted solve has left: solution-so-far.h5.
     /// @param key  a hash of all that decides the result

@@ -349,6 +349,28 @@ void get_number(const Hdf5Reader& file, const std::string& name, model::Solution
     for (std::size_t f = 0; f < values.size(); ++f) solution.frames[f].*field = static_cast<Field>(values[f]);
 }
 
+void put_rows(Hdf5Writer& file, const model::Coefficients& coefficients) {
+    file.attribute("degree", std::int64_t{coefficients.degree});
+    file.attribute("pairs_examined", coefficients.pairs_examined);
+    file.attribute("rays_cast", coefficients.rays_cast);
+    file.dataset("layout/offsets", coefficients.layout.offsets);
+    put_blocks(file, "static_blocks", coefficients.static_blocks);
+    put_pairs(file, "moving_pairs", coefficients.moving_pairs);
+    put_pairs(file, "crossed_pairs", coefficients.crossed_pairs);
+}
+
+model::Coefficients get_rows(const Hdf5Reader& file) {
+    model::Coefficients coefficients;
+    coefficients.degree = static_cast<int>(file.integer("degree"));
+    coefficients.pairs_examined = file.number("pairs_examined");
+    coefficients.rays_cast = file.number("rays_cast");
+    coefficients.layout.offsets = file.dataset<std::uint32_t>("layout/offsets");
+    coefficients.static_blocks = get_blocks(file, "static_blocks");
+    coefficients.moving_pairs = get_pairs(file, "moving_pairs");
+    coefficients.crossed_pairs = get_pairs(file, "crossed_pairs");
+    return coefficients;
+}
+
 } // namespace
 
 void put_patches(Hdf5Writer& file, const model::PatchSet& set) {
@@ -444,27 +466,28 @@ model::ClusterTree get_clusters(const Hdf5Reader& file) {
 }
 
 void put_coefficients(Hdf5Writer& file, const model::Coefficients& coefficients) {
-    file.attribute("degree", std::int64_t{coefficients.degree});
-    file.attribute("pairs_examined", coefficients.pairs_examined);
-    file.attribute("rays_cast", coefficients.rays_cast);
-    file.dataset("layout/offsets", coefficients.layout.offsets);
-    put_blocks(file, "static_blocks", coefficients.static_blocks);
+    put_rows(file, coefficients);
     put_hierarchy(file, coefficients.hierarchy);
-    put_pairs(file, "moving_pairs", coefficients.moving_pairs);
-    put_pairs(file, "crossed_pairs", coefficients.crossed_pairs);
 }
 
 model::Coefficients get_coefficients(const Hdf5Reader& file) {
-    model::Coefficients coefficients;
-    coefficients.degree = static_cast<int>(file.integer("degree"));
-    coefficients.pairs_examined = file.number("pairs_examined");
-    coefficients.rays_cast = file.number("rays_cast");
-    coefficients.layout.offsets = file.dataset<std::uint32_t>("layout/offsets");
-    coefficients.static_blocks = get_blocks(file, "static_blocks");
+    model::Coefficients coefficients = get_rows(file);
     coefficients.hierarchy = get_hierarchy(file);
-    coefficients.moving_pairs = get_pairs(file, "moving_pairs");
-    coefficients.crossed_pairs = get_pairs(file, "crossed_pairs");
     return coefficients;
+}
+
+void put_coefficients_so_far(Hdf5Writer& file, const model::CoefficientsSoFar& so_far) {
+    file.attribute("rows", static_cast<std::int64_t>(so_far.rows));
+    put_rows(file, so_far.coefficients);
+}
+
+model::CoefficientsSoFar get_coefficients_so_far(const Hdf5Reader& file) {
+    model::CoefficientsSoFar so_far{.coefficients = get_rows(file), .rows = 0};
+    const std::int64_t rows = file.integer("rows");
+    if (rows < 0 || static_cast<std::size_t>(rows) > so_far.coefficients.layout.elements())
+        throw core::FileError("more rows are done than there are elements");
+    so_far.rows = static_cast<std::uint64_t>(rows);
+    return so_far;
 }
 
 void put_solution(Hdf5Writer& file, const model::Solution& solution) {

@@ -21,6 +21,10 @@ model::ClusterTree get_clusters(const Hdf5Reader& file);
 void put_coefficients(Hdf5Writer& file, const model::Coefficients& coefficients);
 model::Coefficients get_coefficients(const Hdf5Reader& file);
 
+/// Coefficients of which the first rows are done; the hierarchy is left out.
+void put_coefficients_so_far(Hdf5Writer& file, const model::CoefficientsSoFar& so_far);
+model::CoefficientsSoFar get_coefficients_so_far(const Hdf5Reader& file);
+
 void put_solution(Hdf5Writer& file, const model::Solution& solution);
 model::Solution get_solution(const Hdf5Reader& file);
 

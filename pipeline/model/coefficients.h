@@ -76,6 +76,12 @@ struct Coefficients {
     double rays_cast = 0;      ///< for static blocks [1]
 };
 
+/// What an interrupted computation has left: the blocks and pairs (i, j) with i < rows, as the whole has them.
+struct CoefficientsSoFar {
+    Coefficients coefficients;
+    std::uint64_t rows = 0;
+};
+
 /// @throws GeometryError  unsorted or out-of-range entries, groups that are no trees, value offsets beyond the end, not-a-number values
 void check(const Coefficients& coefficients);
 

@@ -313,6 +313,22 @@ TEST_F(CaseFolderTest, solution_so_far_comes_back_exactly_for_its_key_and_goes_w
     EXPECT_FALSE(folder.read_solution_so_far("one key").has_value());
 }
 
+TEST_F(CaseFolderTest, coefficients_so_far_come_back_for_their_key_and_go_when_the_whole_is_written) {
+    model::Coefficients whole = support::example_coefficients();
+    whole.hierarchy = {};
+    folder.write_coefficients_so_far({.coefficients = whole, .rows = 1}, "one key");
+    EXPECT_FALSE(folder.read_coefficients_so_far("another key").has_value());
+    const auto read = folder.read_coefficients_so_far("one key");
+    ASSERT_TRUE(read.has_value());
+    EXPECT_EQ(read->rows, 1u);
+    EXPECT_EQ(read->coefficients.static_blocks.values, whole.static_blocks.values);
+    EXPECT_EQ(read->coefficients.moving_pairs, whole.moving_pairs);
+    folder.write_coefficients_so_far({.coefficients = whole, .rows = 1000}, "one key");
+    EXPECT_THROW(folder.read_coefficients_so_far("one key"), core::FileError);
+    folder.write_coefficients(whole);
+    EXPECT_FALSE(folder.read_coefficients_so_far("one key").has_value());
+}
+
 TEST_F(CaseFolderTest, same_data_gives_the_same_bytes) {
     std::vector<std::string> first;
     std::vector<std::filesystem::path> paths;

@@ -1,70 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The executables as a user runs them. KINELUX_BIN: where they are; KINELUX_ROOT: the source tree."""
+"""The executables as a user runs them."""
 
 import csv
-import hashlib
 import json
 import math
-import os
 import pathlib
 import re
-import shutil
 import signal
 import subprocess
-import tempfile
-import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 import scenes
-
-BIN = pathlib.Path(os.environ["KINELUX_BIN"])
-ROOT = pathlib.Path(os.environ["KINELUX_ROOT"])
-STAGES = ["clean", "fit", "cluster", "plan", "coefficients", "solve", "export"]
-PROGRAMS = ["kinelux"] + [f"kinelux-{stage}" for stage in STAGES + ["reference"]]
-COMPARED = ["patches.h5", "clusters.h5", "plan.json", "coefficients.h5", "solution.h5", "meters.csv"]
-
-
-def hashes(folder):
-    """Hash of every file of a folder tree by its path."""
-    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in sorted(pathlib.Path(folder).rglob("*")) if path.is_file()}
-
-
-class StageTest(unittest.TestCase):
-    """A temporary folder, and ways to run programs in it."""
-
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="kinelux-stages-"))
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def call(self, program, *arguments):
-        return subprocess.run([str(BIN / program), *map(str, arguments)], cwd=self.folder, capture_output=True,
-                              text=True, check=False, timeout=500)
-
-    def run_ok(self, program, *arguments, code=0):
-        done = self.call(program, *arguments)
-        self.assertEqual(done.returncode, code, f"{program} {arguments}\n{done.stdout}{done.stderr}")
-        return done
-
-    def assert_fails(self, code, pattern, program, *arguments):
-        """One line on stderr, nothing on stdout, the documented exit code."""
-        done = self.call(program, *arguments)
-        lines = done.stderr.splitlines()
-        lines = [line for line in lines if re.match(r"kinelux[a-z-]*: (error|internal error|interrupted)", line)]
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        self.assertEqual(len(lines), 1, done.stderr)
-        self.assertRegex(lines[0], pattern)
-        self.assertTrue(done.stderr.endswith(lines[0] + "\n"), done.stderr)
-
-    @staticmethod
-    def stage_lines(done):
-        return [line for line in done.stderr.splitlines() if line.startswith("kinelux")]
-
-    def assert_same_results(self, one, other):
-        for name in COMPARED:
-            self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
+from programs import BIN, PROGRAMS, ROOT, STAGES, StageTest, hashes
 
 
 class CommandLine(StageTest):
@@ -255,95 +204,6 @@ class BadInput(StageTest):
         self.assertIn("interrupted", rest)
         self.assertEqual(hashes(self.case)["coefficients.h5"], self.before["coefficients.h5"])
         self.run_ok("kinelux", "run", self.scene, "-o", "case")
-
-
-class ResumedSolve(StageTest):
-    """A moving scene that is solved once without interruption, and a copy of its case without the solution."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.made = pathlib.Path(tempfile.mkdtemp(prefix="kinelux-stages-"))
-        cls.addClassCleanup(shutil.rmtree, cls.made)
-        cls.scene = scenes.write_room(cls.made, moving=True, frames=12)
-        text = cls.scene.read_text(encoding="utf-8").replace("element_size = 0.5", "element_size = 0.3")
-        cls.scene.write_text(text, encoding="utf-8")
-        subprocess.run([str(BIN / "kinelux"), "run", str(cls.scene), "-o", str(cls.made / "whole"), "-j", "2"],
-                       capture_output=True, check=True, timeout=500)
-
-    def setUp(self):
-        super().setUp()
-        self.whole = (self.made / "whole/solution.h5").read_bytes()
-        self.case, self.so_far = self.folder / "case", self.folder / "case/solution-so-far.h5"
-        self.fresh_copy()
-
-    def fresh_copy(self):
-        shutil.rmtree(self.case, ignore_errors=True)
-        shutil.copytree(self.made / "whole", self.case)
-        (self.case / "solution.h5").unlink()
-
-    def stop_after(self, saves, sign, *command):
-        """Starts a solve that saves every frame, and sends a signal after so many saves. @return  exit code, stderr"""
-        with subprocess.Popen([str(BIN / command[0]), *map(str, command[1:])], cwd=self.folder, text=True,
-                              stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
-            seen = set()
-            while len(seen) < saves:
-                self.assertIsNone(process.poll(), "ended before it could be stopped")
-                if self.so_far.exists():
-                    seen.add(self.so_far.stat().st_mtime_ns)
-                time.sleep(0.001)
-            process.send_signal(sign)
-            _, printed = process.communicate(timeout=120)
-            return process.returncode, printed
-
-    def assert_finishes_as_if_never_interrupted(self, *arguments):
-        done = self.run_ok("kinelux-solve", "case", *arguments)
-        self.assertRegex(done.stderr, r"resumes after frame \d+: \d+ frames are done")
-        self.assertEqual((self.case / "solution.h5").read_bytes(), self.whole)
-        self.assertFalse(self.so_far.exists())
-
-    def test_killed_at_any_frame_and_run_again_it_gives_the_same_bytes(self):
-        for saves, threads in ((1, 1), (3, 2), (7, 1)):
-            self.fresh_copy()
-            self.stop_after(saves, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0", "-j", threads)
-            self.assertFalse((self.case / "solution.h5").exists())
-            self.assert_finishes_as_if_never_interrupted("-j", 3 - threads)
-        again = self.run_ok("kinelux-solve", "case")
-        self.assertIn("kinelux-solve: up to date", again.stderr)
-
-    def test_killed_twice(self):
-        for saves in (2, 3):
-            self.stop_after(saves, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0")
-        self.assert_finishes_as_if_never_interrupted()
-
-    def test_a_solve_that_is_asked_to_stop_saves_what_it_has_done(self):
-        code, printed = self.stop_after(1, signal.SIGTERM, "kinelux-solve", "case", "--save-every", "0")
-        self.assertEqual(code, 143)
-        self.assertRegex(printed, r"saved \d+ frames; the same command resumes after frame \d+")
-        self.assert_finishes_as_if_never_interrupted()
-
-    def test_kinelux_run_goes_on_where_solve_was_killed(self):
-        self.stop_after(2, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0")
-        done = self.run_ok("kinelux", "run", self.scene, "-o", "case")
-        self.assertIn("resumes after frame", done.stderr)
-        self.assert_same_results(self.made / "whole", self.case)
-
-    def test_what_was_done_with_other_options_or_is_damaged_is_not_used(self):
-        self.stop_after(2, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0")
-        done = self.run_ok("kinelux-solve", "case", "--tolerance", "1e-6")
-        self.assertNotIn("resumes", done.stderr)
-
-        self.fresh_copy()
-        self.stop_after(2, signal.SIGKILL, "kinelux-solve", "case", "--save-every", "0")
-        saved = self.so_far.read_bytes()
-        self.so_far.write_bytes(saved[:len(saved) // 2])
-        done = self.run_ok("kinelux-solve", "case")
-        self.assertIn("begins at the first frame", done.stderr)
-        self.assertEqual((self.case / "solution.h5").read_bytes(), self.whole)
-
-        self.so_far.write_bytes(saved)
-        done = self.run_ok("kinelux-solve", "case", "--resume", "no")
-        self.assertNotIn("resumes", done.stderr)
-        self.assertEqual((self.case / "solution.h5").read_bytes(), self.whole)
 
 
 class MovingScene(StageTest):
