@@ -28,7 +28,7 @@ struct Mesh {
         surfaces; ///< exact surfaces of the file's faces, in the mesh's coordinates; empty: none stated
     std::vector<std::uint32_t>
         surface_of; ///< one per triangle: into `surfaces`, or no_surface; empty where `surfaces` is. The corners
-        ///< lie on the surface; `orientation` is such that its normal points to the triangle's front
+    ///< lie on the surface; `orientation` is such that its normal points to the triangle's front
 };
 
 constexpr std::uint32_t no_surface = 0xffffffffU; ///< of a triangle that no exact surface is known of
