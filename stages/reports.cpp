@@ -31,6 +31,7 @@ constexpr std::array counts{Count{"faces_in", &clean::CleanReport::faces_in},
                             Count{"non_manifold_edges", &clean::CleanReport::non_manifold_edges},
                             Count{"boundary_edges", &clean::CleanReport::boundary_edges},
                             Count{"self_intersections", &clean::CleanReport::self_intersections},
+                            Count{"crossing_faces", &clean::CleanReport::crossing_faces},
                             Count{"two_sided_faces", &clean::CleanReport::two_sided_faces}};
 
 void record(const clean::CleanReport& report, const std::string& key, core::RunRecord& record) {
@@ -48,7 +49,7 @@ void record(const clean::CleanReport& report, const std::string& key, core::RunR
 
 void report_cleaning(const clean::CleanResult& cleaned, cli::Stage& stage) {
     cli::TextTable table(
-        {"object", "faces", "kept", "merged", "removed", "turned", "two-sided", "area [m2]"});
+        {"object", "faces", "kept", "merged", "removed", "turned", "two-sided", "crossing", "area [m2]"});
     std::uint64_t faces = 0;
     for (std::size_t o = 0; o < cleaned.reports.size(); ++o) {
         const clean::CleanReport& report = cleaned.reports[o];
@@ -57,7 +58,7 @@ void report_cleaning(const clean::CleanResult& cleaned, cli::Stage& stage) {
                    std::to_string(report.merged_points),
                    std::to_string(report.duplicate_faces + report.degenerate_faces + report.opposite_faces),
                    std::to_string(report.flipped_faces), std::to_string(report.two_sided_faces),
-                   cli::short_number(report.area_out)});
+                   std::to_string(report.crossing_faces), cli::short_number(report.area_out)});
         for (const std::string& note : report.notes)
             core::log_detail(fmt::format("{}: {}", report.object, note));
         faces += report.faces_out;

@@ -18,16 +18,17 @@ namespace kinelux::clean {
 
 namespace {
 
-// Counting pairs of faces that cross costs minutes on more faces than this.
-constexpr std::size_t most_faces_checked = 200000;
-
-void count_intersections(const model::Mesh& mesh, CleanReport& report) {
-    if (mesh.triangles.size() > most_faces_checked) {
-        report.notes.push_back(fmt::format("not searched for faces that cross each other: more than {} faces",
-                                           most_faces_checked));
-        return;
-    }
-    report.self_intersections = count_self_intersections(mesh.points, mesh.triangles);
+// Counts the faces that cross each other and says where the first of them lies.
+void report_intersections(const model::Mesh& mesh, CleanReport& report) {
+    const SelfIntersections found = find_self_intersections(mesh.points, mesh.triangles);
+    report.self_intersections = found.pairs;
+    report.crossing_faces = found.faces.size();
+    if (found.faces.empty()) return;
+    const model::Triangle& t = mesh.triangles[found.faces.front()];
+    const Vec3 x = (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]) / 3.0;
+    report.notes.push_back(
+        fmt::format("{} face(s) touch or cross others, the first at ({:.6g}, {:.6g}, {:.6g}) m",
+                    found.faces.size(), x.x, x.y, x.z));
 }
 
 // Turns the faces of an object to agree within each connected part and returns the parts. Pinned faces stay as they are.
@@ -110,7 +111,7 @@ CleanResult clean_scene(model::Scene scene, const CleanOptions& options) {
         CleanReport& report = result.reports[o];
         note_settling(settled[o], report);
         meshes.push_back(repair(scene.objects[o], options, report));
-        count_intersections(meshes.back().mesh, report);
+        report_intersections(meshes.back().mesh, report);
         parts.push_back(orient(meshes.back(), report));
     }
     decide_sides(scene, parts, meshes, result.reports);

@@ -29,6 +29,7 @@ struct CleanReport {
     std::uint64_t non_manifold_edges = 0; ///< kept, with their points doubled
     std::uint64_t boundary_edges = 0;     ///< after cleaning
     std::uint64_t self_intersections = 0; ///< pairs of faces, kept, listed only
+    std::uint64_t crossing_faces = 0;     ///< faces that are in any of those pairs
     std::uint64_t two_sided_faces = 0;
     std::uint32_t parts = 0, closed_parts = 0; ///< connected components
     double area_in = 0.0, area_out = 0.0;      ///< [m2]

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
+
+#include "core/parallel.h"
 
 namespace kinelux::clean {
 
@@ -63,20 +66,64 @@ bool intersect(const Shapes& shapes, std::size_t f, std::size_t g) {
     return false;
 }
 
+// Pairs whose boxes meet are tested once this many have been gathered, which bounds the memory they take.
+constexpr std::size_t pairs_at_a_time = 1U << 20U;
+// Pairs one task tests.
+constexpr std::size_t pairs_per_task = 1024;
+
+// Gathers pairs of faces and tests them on all threads.
+class PairTester {
+public:
+    explicit PairTester(const Shapes& shapes) : shapes_(shapes), marked_(shapes.triangles.size(), 0) {}
+
+    void add(std::size_t f, std::size_t g) {
+        pairs_.push_back({static_cast<std::uint32_t>(f), static_cast<std::uint32_t>(g)});
+        if (pairs_.size() == pairs_at_a_time) test();
+    }
+
+    SelfIntersections result() {
+        test();
+        for (std::uint32_t f = 0; f < marked_.size(); ++f) {
+            if (marked_[f] != 0) found_.faces.push_back(f);
+        }
+        return std::move(found_);
+    }
+
+private:
+    void test() {
+        std::vector<std::uint8_t> met(pairs_.size(), 0);
+        core::parallel_for((pairs_.size() + pairs_per_task - 1) / pairs_per_task, [&](std::size_t task) {
+            const std::size_t end = std::min(pairs_.size(), (task + 1) * pairs_per_task);
+            for (std::size_t i = task * pairs_per_task; i < end; ++i)
+                met[i] = intersect(shapes_, pairs_[i][0], pairs_[i][1]) ? 1 : 0;
+        });
+        for (std::size_t i = 0; i < pairs_.size(); ++i) {
+            if (met[i] == 0) continue;
+            ++found_.pairs;
+            marked_[pairs_[i][0]] = marked_[pairs_[i][1]] = 1;
+        }
+        pairs_.clear();
+    }
+
+    const Shapes& shapes_;
+    std::vector<std::array<std::uint32_t, 2>> pairs_;
+    std::vector<std::uint8_t> marked_;
+    SelfIntersections found_;
+};
+
 } // namespace
 
-std::uint64_t count_self_intersections(std::span<const Vec3> points,
-                                       std::span<const model::Triangle> triangles) {
+SelfIntersections find_self_intersections(std::span<const Vec3> points,
+                                          std::span<const model::Triangle> triangles) {
     Shapes shapes;
     for (const Vec3& x : points) shapes.points.emplace_back(x.x, x.y, x.z);
     shapes.triangles = triangles;
     std::vector<Box> boxes;
     for (std::size_t f = 0; f < triangles.size(); ++f) boxes.emplace_back(shapes.triangle(f).bbox(), f);
-    std::uint64_t count = 0;
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-        if (intersect(shapes, a.info(), b.info())) ++count;
-    });
-    return count;
+    PairTester tester(shapes);
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                  [&](const Box& a, const Box& b) { tester.add(a.info(), b.info()); });
+    return tester.result();
 }
 
 } // namespace kinelux::clean

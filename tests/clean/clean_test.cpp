@@ -245,7 +245,9 @@ TEST(Clean, crossing_sheets_are_counted) {
     add_object(scene, "box", box_mesh(Vec3{3.0}, Vec3{4.0}));
     const CleanResult result = cleaned(scene);
     EXPECT_GT(result.reports[0].self_intersections, 0U);
+    EXPECT_GT(result.reports[0].crossing_faces, 1U);
     EXPECT_EQ(result.reports[1].self_intersections, 0U);
+    EXPECT_EQ(result.reports[1].crossing_faces, 0U);
 }
 
 TEST(Clean, coordinate_that_is_not_a_number_names_object_and_face) {
