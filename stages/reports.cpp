@@ -39,6 +39,7 @@ void record(const clean::CleanReport& report, const std::string& key, core::RunR
     for (const Count& count : counts) record.set(key + "/" + count.name, report.*count.value);
     record.set(key + "/parts", static_cast<std::uint64_t>(report.parts));
     record.set(key + "/closed_parts", static_cast<std::uint64_t>(report.closed_parts));
+    record.set(key + "/gap_length_m", report.gap_length);
     record.set(key + "/area_in_m2", report.area_in);
     record.set(key + "/area_out_m2", report.area_out);
     record.set(key + "/volume_out_m3", report.volume_out);

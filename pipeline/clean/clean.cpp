@@ -31,6 +31,20 @@ void report_intersections(const model::Mesh& mesh, CleanReport& report) {
                     found.faces.size(), x.x, x.y, x.z));
 }
 
+// Says where an object is open: light passes there, unless other objects close the gap.
+void report_gaps(const std::vector<Part>& parts, CleanReport& report) {
+    const Part* widest = nullptr;
+    for (const Part& part : parts) {
+        report.gap_length += part.gap_length;
+        if (widest == nullptr || part.longest_gap > widest->longest_gap) widest = &part;
+    }
+    if (widest == nullptr || widest->longest_gap == 0.0) return;
+    const Vec3& x = widest->gap_place;
+    report.notes.push_back(
+        fmt::format("open along {:.6g} m of edges, the longest ({:.6g} m) at ({:.6g}, {:.6g}, {:.6g}) m",
+                    report.gap_length, widest->longest_gap, x.x, x.y, x.z));
+}
+
 // Turns the faces of an object to agree within each connected part and returns the parts. Pinned faces stay as they are.
 std::vector<Part> orient(WorkMesh& work, CleanReport& report) {
     std::vector<std::uint32_t> loose;
@@ -59,6 +73,7 @@ std::vector<Part> orient(WorkMesh& work, CleanReport& report) {
         for (std::uint32_t& face : part.faces) face = loose[face];
     }
     report.parts = static_cast<std::uint32_t>(parts.size());
+    report_gaps(parts, report);
     return parts;
 }
 

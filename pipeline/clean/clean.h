@@ -28,6 +28,7 @@ struct CleanReport {
     std::uint64_t flipped_faces = 0; ///< turned to agree with their neighbours or to face outwards
     std::uint64_t non_manifold_edges = 0; ///< kept, with their points doubled
     std::uint64_t boundary_edges = 0;     ///< after cleaning
+    double gap_length = 0.0;              ///< of the edges along which its parts are open, slits aside [m]
     std::uint64_t self_intersections = 0; ///< pairs of faces, kept, listed only
     std::uint64_t crossing_faces = 0;     ///< faces that are in any of those pairs
     std::uint64_t two_sided_faces = 0;

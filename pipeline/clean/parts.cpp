@@ -46,18 +46,34 @@ Connected connect(std::span<const Vec3> points, std::span<const model::Triangle>
     return result;
 }
 
-// Whether every boundary edge of a part lies on one that runs the opposite way.
-bool is_closed(const std::map<std::array<std::uint32_t, 2>, int>& boundary) {
-    return std::all_of(boundary.begin(), boundary.end(), [&](const auto& edge) {
-        const auto opposite = boundary.find({edge.first[1], edge.first[0]});
-        return opposite != boundary.end() && opposite->second == edge.second;
-    });
+// Boundary edges of a part by the places they lead from and to, each with its number and the ends of one of them.
+struct Boundary {
+    int count = 0;
+    HalfEdgeMesh::Point from, to;
+};
+using BoundaryEdges = std::map<std::array<std::uint32_t, 2>, Boundary>;
+
+// A part is open along the boundary edges that lie on none that runs the opposite way.
+void measure_gaps(const BoundaryEdges& boundary, Part& part) {
+    part.closed = true;
+    for (const auto& [ends, edge] : boundary) {
+        const auto opposite = boundary.find({ends[1], ends[0]});
+        const int closing = opposite != boundary.end() ? opposite->second.count : 0;
+        if (closing != edge.count) part.closed = false;
+        if (closing >= edge.count) continue;
+        const double length = (edge.to - edge.from).length();
+        part.gap_length += length * (edge.count - closing);
+        if (length <= part.longest_gap) continue;
+        part.longest_gap = length;
+        const HalfEdgeMesh::Point middle = (edge.from + edge.to) * 0.5;
+        part.gap_place = Vec3{middle[0], middle[1], middle[2]};
+    }
 }
 
 Part collect(const Connected& connected, std::uint32_t seed, std::vector<std::uint8_t>& seen) {
     const HalfEdgeMesh& mesh = connected.mesh;
     Part part;
-    std::map<std::array<std::uint32_t, 2>, int> boundary;
+    BoundaryEdges boundary;
     part.faces.push_back(seed);
     seen[seed] = 1;
     for (std::size_t i = 0; i < part.faces.size(); ++i) {
@@ -66,9 +82,9 @@ Part collect(const Connected& connected, std::uint32_t seed, std::vector<std::ui
             const HalfEdgeMesh::FaceHandle other = mesh.opposite_face_handle(*half_edge);
             if (!other.is_valid()) {
                 ++part.boundary_edges;
-                const int from = mesh.from_vertex_handle(*half_edge).idx(),
-                          to = mesh.to_vertex_handle(*half_edge).idx();
-                ++boundary[{connected.origin[from], connected.origin[to]}];
+                const auto from = mesh.from_vertex_handle(*half_edge), to = mesh.to_vertex_handle(*half_edge);
+                Boundary& edge = boundary[{connected.origin[from.idx()], connected.origin[to.idx()]}];
+                edge = {edge.count + 1, mesh.point(from), mesh.point(to)};
                 continue;
             }
             const auto next = static_cast<std::uint32_t>(other.idx());
@@ -78,7 +94,7 @@ Part collect(const Connected& connected, std::uint32_t seed, std::vector<std::ui
         }
     }
     std::sort(part.faces.begin(), part.faces.end());
-    part.closed = is_closed(boundary);
+    measure_gaps(boundary, part);
     return part;
 }
 

@@ -15,6 +15,9 @@ struct Part {
     std::vector<std::uint32_t> faces; ///< ascending
     std::uint64_t boundary_edges = 0; ///< with a face on one side only
     bool closed = false;
+    double gap_length = 0.0;  ///< of all boundary edges that lie on no other of the part [m]
+    double longest_gap = 0.0; ///< of the longest of them [m]; 0 = there is none
+    Vec3 gap_place{0.0};      ///< its middle
 };
 
 /// Connected parts of consistently oriented triangles, in order of their first face.

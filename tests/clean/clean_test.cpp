@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "clean/clean.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -248,6 +253,37 @@ TEST(Clean, crossing_sheets_are_counted) {
     EXPECT_GT(result.reports[0].crossing_faces, 1U);
     EXPECT_EQ(result.reports[1].self_intersections, 0U);
     EXPECT_EQ(result.reports[1].crossing_faces, 0U);
+}
+
+// Each face in turn is taken out of a closed box: the gap is its three edges, the longest of them the diagonal.
+TEST(Clean, gap_left_by_any_missing_face_is_measured_and_placed) {
+    const model::Mesh box = box_mesh(Vec3{0.0}, Vec3{1.0});
+    for (std::size_t missing = 0; missing < box.triangles.size(); ++missing) {
+        model::Scene scene = auto_scene();
+        model::Mesh open = box;
+        open.triangles.erase(open.triangles.begin() + static_cast<std::ptrdiff_t>(missing));
+        open.materials.pop_back();
+        add_object(scene, "open", open);
+        add_object(scene, "box", box_mesh(Vec3{3.0}, Vec3{4.0}));
+        const CleanResult result = cleaned(scene);
+        EXPECT_NEAR(result.reports[0].gap_length, 2.0 + std::sqrt(2.0), 1e-12);
+        EXPECT_EQ(result.reports[1].gap_length, 0.0);
+        const model::Triangle& t = box.triangles[missing];
+        Vec3 middle{0.0};
+        double longest = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 &a = box.points[t[k]], &b = box.points[t[(k + 1) % 3]];
+            if (glm::distance(a, b) <= longest) continue;
+            longest = glm::distance(a, b);
+            middle = 0.5 * (a + b);
+        }
+        std::ostringstream place;
+        place << "(1.41421 m) at (" << middle.x << ", " << middle.y << ", " << middle.z << ") m";
+        const std::vector<std::string>& notes = result.reports[0].notes;
+        EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
+            return note.find(place.str()) != std::string::npos;
+        })) << place.str();
+    }
 }
 
 TEST(Clean, coordinate_that_is_not_a_number_names_object_and_face) {
