@@ -9,6 +9,7 @@ import pathlib
 import re
 import signal
 import subprocess
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -182,7 +183,7 @@ class BadInput(StageTest):
         self.assertEqual(hashes(self.case), self.before)
 
     def test_memory_beyond_the_limit_is_refused_before_work(self):
-        self.assert_fails(6, r"MiB.*--memory-limit", "kinelux-coefficients", "case", "--memory-limit", "0.01")
+        self.assert_fails(6, r"MiB.*--memory-limit", "kinelux-coefficients", "case", "--resume", "no", "--memory-limit", "0.01")
         self.assertEqual(hashes(self.case), self.before)
 
     def test_not_converged_is_written_marked_and_stays_5(self):
