@@ -398,7 +398,8 @@ private:
         if (sight == Sight::Clear)
             pieces = cut_below_edges(std::move(pieces), loops, inner_front, 2.0 * outer.radius);
         else if (sight == Sight::Few)
-            pieces = cut_at_blockers(std::move(pieces), blockers_.blockers(), outer_front, 2.0 * outer.radius);
+            pieces =
+                cut_at_blockers(std::move(pieces), blockers_.blockers(), outer_front, 2.0 * outer.radius);
         if (loops.empty() || pieces.empty()) return;
         const InnerPolygon polygon{loops, inner.facets.front().corners[0], inner_front.normal};
         const double gather_tolerance = gather_share * options_.tolerance;
@@ -415,7 +416,7 @@ private:
         } else if (sight == Sight::Few && options_.exact_sight) {
             outer_options.tolerance = options_.sight_tolerance;
             outer_options.refine = true;
-            outer_options.floor = 0.1 * std::sqrt(outer.area / inner.area);
+            outer_options.floor = options_.sight_floor * std::sqrt(outer.area / inner.area);
             outer_options.most_points = 60000;
             PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(),
                                        gather_share * options_.sight_tolerance);
