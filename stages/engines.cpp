@@ -38,6 +38,14 @@ std::vector<MaterialId> emitting(const model::Scene& scene) {
     return result;
 }
 
+motion::PaperOptions paper_options(const std::string& shadows, const model::Scene& scene) {
+    motion::PaperOptions options;
+    options.occlusion =
+        shadows == "exact" ? motion::PaperOcclusion::Exact : motion::PaperOcclusion::Publication;
+    if (shadows == "publication") options.sources = emitting(scene);
+    return options;
+}
+
 motion::PosePath path_of(const model::Scene& scene, std::span<const std::uint32_t> frames) {
     motion::PosePath path;
     for (const std::uint32_t frame : frames) {
@@ -49,21 +57,27 @@ motion::PosePath path_of(const model::Scene& scene, std::span<const std::uint32_
 
 } // namespace
 
-cli::OptionRow engine_row(std::string& member) {
-    return {.member = &member,
-            .flags = "--engine",
-            .help =
-                "how blocks change when bodies move: integrated anew, continued from frame to frame, "
-                "polynomials in time, or by the publication's series; auto: offline for more than 8 frames, "
-                "else exact",
-            .words = {"auto", "exact", "online", "offline", "paper"}};
+void add_engine_options(EngineOptions& options, cli::OptionTable& table) {
+    table.add(
+        {.member = &options.name,
+         .flags = "--engine",
+         .help = "how blocks change when bodies move: integrated anew, continued from frame to frame, "
+                 "polynomials in time, or by the publication's series; auto: offline for more than 8 frames, "
+                 "else exact",
+         .words = {"auto", "exact", "online", "offline", "paper"}});
+    table.add({.member = &options.paper_shadows,
+               .flags = "--paper-shadows",
+               .help =
+                   "of --engine paper, in the light that is reflected on: as published, but exact where a "
+                   "source is at one end; exact everywhere; or as published at sources too",
+               .words = {"publication", "exact", "sources-too"}});
 }
 
-NamedEngine make_engine(const std::string& name, LightCase& light, const model::Coefficients& blocks,
+NamedEngine make_engine(const EngineOptions& wanted, LightCase& light, const model::Coefficients& blocks,
                         std::span<const double> areas, std::span<const std::uint32_t> frames,
                         std::uint64_t seed) {
     const bool many = !light.plan.moving_objects.empty() && frames.size() > few_frames;
-    const std::string chosen = name == "auto" ? (many ? "offline" : "exact") : name;
+    const std::string chosen = wanted.name == "auto" ? (many ? "offline" : "exact") : wanted.name;
     const kernel::TransportOptions options = light.transport_options(seed);
     if (chosen == "exact")
         return {chosen, std::make_unique<motion::ExactEngine>(blocks, light.elements, light.plan,
@@ -71,7 +85,7 @@ NamedEngine make_engine(const std::string& name, LightCase& light, const model::
     if (chosen == "paper")
         return {chosen, std::make_unique<motion::PaperEngine>(
                             blocks, light.elements, light.plan, light.occluders, options,
-                            motion::PaperOptions{.sources = emitting(light.scene)})};
+                            paper_options(wanted.paper_shadows, light.scene))};
     const motion::Importance weights = importance(light, blocks, areas, frames, options);
     const double tolerance = share_of_motion * light.scene.accuracy.target;
     if (chosen == "online")

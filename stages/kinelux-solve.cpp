@@ -22,7 +22,7 @@ struct Options {
     std::optional<double> tolerance;
     double max_sweeps = solve::SolveOptions{}.max_sweeps;
     double save_every_s = stages::default_save_every_s;
-    std::string engine = "auto";
+    stages::EngineOptions engine;
 
     explicit Options(cli::OptionTable& table) {
         table.add(
@@ -49,7 +49,7 @@ struct Options {
                    .low = 1,
                    .high = 1e9});
         table.add(stages::save_every_row(save_every_s, "the frames"));
-        table.add(stages::engine_row(engine));
+        stages::add_engine_options(engine, table);
     }
     solve::SolveOptions for_target(double target) const {
         static const std::map<std::string, solve::Method> methods{

@@ -11,8 +11,8 @@ namespace kinelux::clean {
 /// Lifts bodies that emit or move within the plane of a resting surface facing the same way (a lamp set into a ceiling)
 /// to the front of it, by 5e-6 of the scene's extent: which of two surfaces in one place is hit by a ray, and which is
 /// seen, would be undecided otherwise. The lift is less than what fit takes for contact, so the surface covered by a
-/// lamp at rest is still removed there; and less than the offset at which shadow rays start, so a moving body does not darken the
-/// surface it slides along (which would have to be cut anew in every frame): what it covers counts as uncovered.
+/// lamp at rest is still removed there. What a moving one covers is dark, as it is behind a lamp that hangs lower, where
+/// polygons are clipped exactly; it is less than the offset at which shadow rays start, so where these decide it is not.
 /// Adds a note to the report of each body lifted. @param scene  with oriented meshes
 void lift_coplanar_panels(model::Scene& scene, std::vector<CleanReport>& reports);
 

@@ -193,6 +193,8 @@ int drive(const std::vector<std::string>& arguments, std::span<const Command> co
     }
     known.emplace_back("reference");
     table.row({"reference", "kinelux-reference: measures the exported irradiance against path tracing"});
+    known.emplace_back("study");
+    table.row({"study", "kinelux-study: what accuracy costs on a scene, with measured errors"});
 
     if (arguments.empty()) throw core::OptionError("a command is missing; see kinelux --help");
     const std::string& word = arguments.front();

@@ -25,11 +25,11 @@ constexpr int most_nodes = 12;
 // A triangle has 2 = 3. Each direction has its Gauss rule, its error, and where it is divided.
 struct Direction {
     int nodes = 2;
-    double rate = 1.0;         ///< Singularity::rate
-    double raw_error = 0.0;    ///< of the cell's values, before calibration [1]
-    double calibration = 10.0; ///< what raw errors were found to be wrong by nearby
-    double foretold = 0.0;     ///< error relative to the integrand's size, from where it is singular [1]
-    double place = 0.5;        ///< Singularity::place
+    double rate = 1.0;        ///< Singularity::rate
+    double raw_error = 0.0;   ///< of the cell's values, before calibration [1]
+    double calibration = 3.0; ///< what raw errors were found to be wrong by nearby
+    double foretold = 0.0;    ///< error relative to the integrand's size, from where it is singular [1]
+    double place = 0.5;       ///< Singularity::place
     double layer = std::numeric_limits<double>::infinity(); ///< Singularity::layer
     double division = 0.5;
 

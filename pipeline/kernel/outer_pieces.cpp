@@ -14,6 +14,45 @@ Vec2 barycentric(const geometry::Facet& facet, const Vec3& point) {
             glm::dot(glm::cross(e1, d), facet.normal) / (2.0 * facet.area)};
 }
 
+namespace {
+
+constexpr double sliver = 1e-9; // of the outer element's size
+
+Vec3 corner(const OuterPiece& piece, const Vec2& at) {
+    const geometry::Facet& f = *piece.facet;
+    return f.corners[0] + at.x * (f.corners[1] - f.corners[0]) + at.y * (f.corners[2] - f.corners[0]);
+}
+
+// Both parts of pieces that lie on both sides of a line. @param beyond  distance of a point from it, signed [m]
+// @param wanted  whether a piece is to be cut at all
+template <typename Beyond, typename Wanted>
+std::vector<OuterPiece> cut(std::vector<OuterPiece> pieces, double size, const Beyond& beyond,
+                            const Wanted& wanted) {
+    visibility::LoopCutter<Vec2> cutter;
+    std::vector<OuterPiece> result;
+    for (OuterPiece& piece : pieces) {
+        double left = 0.0, right = 0.0;
+        for (const Vec2& at : piece.corners) {
+            const double distance = beyond(corner(piece, at));
+            left = std::min(left, distance);
+            right = std::max(right, distance);
+        }
+        if (left > -sliver * size || right < sliver * size || !wanted(piece)) {
+            result.push_back(std::move(piece));
+            continue;
+        }
+        for (const double side : {-1.0, 1.0}) {
+            cutter.begin(piece.corners);
+            cutter.keep([&](const Vec2& at) { return side * beyond(corner(piece, at)); });
+            if (cutter.loop().size() >= 3)
+                result.push_back({piece.facet, {cutter.loop().begin(), cutter.loop().end()}});
+        }
+    }
+    return result;
+}
+
+} // namespace
+
 std::vector<OuterPiece> pieces_in_front(const geometry::ElementShape& a, const visibility::HalfSpace& front,
                                         double slack) {
     const bool whole =
@@ -38,42 +77,39 @@ std::vector<OuterPiece> cut_below_edges(std::vector<OuterPiece> pieces, const vi
                                         const visibility::HalfSpace& front, double size) {
     constexpr double narrow = 0.1;         // of the outer element's size
     constexpr std::size_t most_edges = 64; // of the inner polygon; more are left to the planning of cells
-    const auto corner = [](const geometry::Facet& f, const Vec2& at) {
-        return f.corners[0] + at.x * (f.corners[1] - f.corners[0]) + at.y * (f.corners[2] - f.corners[0]);
-    };
     if (loops.points.size() > most_edges) return pieces;
-    visibility::LoopCutter<Vec2> cutter;
+    const auto near = [&](const OuterPiece& piece) {
+        return std::any_of(piece.corners.begin(), piece.corners.end(), [&](const Vec2& at) {
+            return front.distance(corner(piece, at)) <= narrow * size;
+        });
+    };
     for (std::size_t l = 0; l < loops.size(); ++l)
         for (std::size_t i = 0, j = loops[l].size() - 1; i < loops[l].size(); j = i++) {
             const Vec3& from = loops[l][j];
             const Vec3 across = glm::cross(loops[l][i] - from, front.normal);
             const double length = glm::length(across);
             if (!(length > 0.0)) continue;
-            std::vector<OuterPiece> cut;
-            for (OuterPiece& piece : pieces) {
-                double lowest = size, left = 0.0, right = 0.0;
-                const auto beyond = [&](const Vec2& at) {
-                    return glm::dot(corner(*piece.facet, at) - from, across) / length;
-                };
-                for (const Vec2& at : piece.corners) {
-                    lowest = std::min(lowest, front.distance(corner(*piece.facet, at)));
-                    left = std::min(left, beyond(at));
-                    right = std::max(right, beyond(at));
-                }
-                constexpr double sliver = 1e-9;
-                if (lowest > narrow * size || left > -sliver * size || right < sliver * size) {
-                    cut.push_back(std::move(piece));
-                    continue;
-                }
-                for (const double side : {-1.0, 1.0}) {
-                    cutter.begin(piece.corners);
-                    cutter.keep([&](const Vec2& at) { return side * beyond(at); });
-                    if (cutter.loop().size() >= 3)
-                        cut.push_back({piece.facet, {cutter.loop().begin(), cutter.loop().end()}});
-                }
-            }
-            pieces = std::move(cut);
+            pieces = cut(
+                std::move(pieces), size,
+                [&](const Vec3& point) { return glm::dot(point - from, across) / length; }, near);
         }
+    return pieces;
+}
+
+std::vector<OuterPiece> cut_at_blockers(std::vector<OuterPiece> pieces,
+                                        std::span<const visibility::PlanarBlocker> blockers,
+                                        const visibility::HalfSpace& front, double size) {
+    for (const visibility::PlanarBlocker& blocker : blockers) {
+        double lowest = size, highest = -size;
+        for (const Vec3& point : blocker.loops.points) {
+            lowest = std::min(lowest, front.distance(point));
+            highest = std::max(highest, front.distance(point));
+        }
+        if (lowest > sliver * size || highest < sliver * size) continue;
+        pieces = cut(
+            std::move(pieces), size, [&](const Vec3& point) { return blocker.plane.distance(point); },
+            [](const OuterPiece&) { return true; });
+    }
     return pieces;
 }
 

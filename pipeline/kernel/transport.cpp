@@ -366,10 +366,29 @@ private:
         block_.error = rays.share_error() * frobenius_norm(block_.values);
     }
 
-    // The inner integral is exact on the larger polygon, the outer one runs over the smaller.
-    void near(Sight sight) {
+    // The inner integral is exact, the outer one samples. It runs over the smaller polygon; where something stands between,
+    // over the one on which its shadow is softer: a shadow that all but touches may fall between all samples.
+    bool outer_is_b(Sight sight) const {
         constexpr double equal = 1.0 + 1e-9; // rounding does not choose between elements of one size
-        const bool swapped = a_.area > equal * b_.area;
+        if (sight != Sight::Few || !options_.exact_sight) return a_.area > equal * b_.area;
+        const double soft_on_a = nearest_blocker(a_) * b_.area, soft_on_b = nearest_blocker(b_) * a_.area;
+        return soft_on_b > equal * soft_on_a || (soft_on_b * equal > soft_on_a && a_.area > equal * b_.area);
+    }
+
+    // Mean distance of the nearest blocker's corners from an element's plane [m].
+    double nearest_blocker(const ElementShape& element) const {
+        const HalfSpace front = front_of(element);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const visibility::PlanarBlocker& blocker : blockers_.blockers()) {
+            double sum = 0.0;
+            for (const Vec3& point : blocker.loops.points) sum += std::abs(front.distance(point));
+            nearest = std::min(nearest, sum / static_cast<double>(blocker.loops.points.size()));
+        }
+        return nearest;
+    }
+
+    void near(Sight sight) {
+        const bool swapped = outer_is_b(sight);
         const ElementShape& outer = swapped ? b_ : a_;
         const ElementShape& inner = swapped ? a_ : b_;
         const HalfSpace outer_front = front_of(outer), inner_front = front_of(inner);
@@ -378,6 +397,9 @@ private:
         std::vector<OuterPiece> pieces = pieces_in_front(outer, inner_front, slack);
         if (sight == Sight::Clear)
             pieces = cut_below_edges(std::move(pieces), loops, inner_front, 2.0 * outer.radius);
+        else if (sight == Sight::Few)
+            pieces =
+                cut_at_blockers(std::move(pieces), blockers_.blockers(), outer_front, 2.0 * outer.radius);
         if (loops.empty() || pieces.empty()) return;
         const InnerPolygon polygon{loops, inner.facets.front().corners[0], inner_front.normal};
         const double gather_tolerance = gather_share * options_.tolerance;
@@ -394,7 +416,7 @@ private:
         } else if (sight == Sight::Few && options_.exact_sight) {
             outer_options.tolerance = options_.sight_tolerance;
             outer_options.refine = true;
-            outer_options.floor = 0.1 * std::sqrt(outer.area / inner.area);
+            outer_options.floor = options_.sight_floor * std::sqrt(outer.area / inner.area);
             outer_options.most_points = 60000;
             PartlyHiddenPolygon gather(inner, loops, blockers_.blockers(),
                                        gather_share * options_.sight_tolerance);

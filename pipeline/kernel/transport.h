@@ -21,7 +21,10 @@ struct TransportOptions {
     double tolerance =
         1e-3; ///< of a block with nothing in between [1], 1e-9..0.1, relative to its size, or to 1e-3
               ///< of the largest block that elements of such areas can have
-    double sight_tolerance = 1e-2; ///< of a block with something in between [1], tolerance..0.1
+    double sight_tolerance =
+        1e-2; ///< of a block with something in between [1], tolerance..0.1, relative to its size
+    double sight_floor =
+        1e-3; ///< or to this part of the largest block that elements of such areas can have [1], 0..1
     bool occlusion = true;         ///< false: nothing stands between any pair
     bool exact_sight = true;       ///< visible parts of polygons by clipping where few polygons can hide them
     std::size_t most_blockers = 6; ///< few, for exact_sight

@@ -13,7 +13,7 @@ namespace {
 // Longest piece where something may stand between [frames]: a shadow that comes and goes within a quarter of it is missed.
 constexpr std::uint32_t longest_shaded = 24;
 // Pieces of fewer steps are not worth interpolating: the checks would cost as much as all of their frames.
-constexpr std::uint32_t shortest_clear = 6, shortest_shaded = 5;
+constexpr std::uint32_t shortest_clear = 6, shortest_shaded = 9;
 constexpr std::uint32_t shortest_nine = 16; ///< steps over which nine Lobatto nodes fall on different frames
 // Of the tolerance: blocks below it may be interpolated as they like.
 constexpr double nothing = 0.3;
@@ -39,6 +39,7 @@ std::vector<std::uint32_t> lobatto(std::uint32_t first, std::uint32_t last, std:
 } // namespace
 
 void BlockPath::add_run(Change change, std::uint32_t first, std::uint32_t last) {
+    if (change == Change::Near) return open_.push_back({first, last, change, all});
     const std::uint32_t longest = change == Change::Shaded ? longest_shaded : last - first;
     const std::uint32_t shortest = change == Change::Shaded ? shortest_shaded : shortest_clear;
     const std::uint32_t parts = longest > 0 ? (last - first + longest - 1) / longest : 1;

@@ -32,7 +32,7 @@ public:
         std::uint32_t frame;
         Change change;
     };
-    /// Frames first..last, through which the pair is `change`: Clear, Horizon or Shaded. Later runs begin later, at the
+    /// Frames first..last, through which the pair is `change`: Clear, Horizon, Near or Shaded. Later runs begin later, at the
     /// last frame of one before at the earliest.
     void add_run(Change change, std::uint32_t first, std::uint32_t last);
     bool finished() const { return open_.empty(); }

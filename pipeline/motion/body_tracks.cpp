@@ -73,6 +73,7 @@ void BodyTracks::follow(std::uint64_t frame, double time_s, std::span<const geom
             track.moved_at = frame;
             any_moved_at_ = frame;
         }
+        track.step = placed_ ? step : 0.0;
         const double share = track.known > 2 ? off_the_path : off_the_line;
         track.jumped = track.known > 1 && off > share * step + slack;
         any_jumped_ = any_jumped_ || track.jumped;
@@ -91,6 +92,11 @@ std::uint64_t BodyTracks::moved_at(ObjectId object) const {
 bool BodyTracks::jumped(ObjectId object) const {
     return object.value < track_of_.size() && track_of_[object.value] != none &&
            tracks_[track_of_[object.value]].jumped;
+}
+
+double BodyTracks::step(ObjectId object) const {
+    const bool tracked = object.value < track_of_.size() && track_of_[object.value] != none;
+    return tracked ? tracks_[track_of_[object.value]].step : 0.0;
 }
 
 } // namespace kinelux::motion

@@ -31,6 +31,8 @@ public:
     /// Whether in the last frame a body was not where it was expected; nothing is expected of the frame after that.
     bool jumped(ObjectId object) const;
     bool any_jumped() const { return any_jumped_; }
+    /// How far any point of a body moved to get to the last frame, at most; 0 for bodies at rest and in the first frame [m].
+    double step(ObjectId object) const;
 
 private:
     using Points = std::array<Vec3, 4>;
@@ -41,6 +43,7 @@ private:
         std::size_t known = 0;        ///< places since it last left its path
         std::uint64_t moved_at = 0;
         bool jumped = false;
+        double step = 0.0; ///< to the newest place [m]
     };
     Points expected(const Track& track, double time_s) const;
 

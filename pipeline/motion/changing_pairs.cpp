@@ -2,9 +2,11 @@
 #include "motion/changing_pairs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
+#include "kernel/far_pair.h"
 #include "visibility/pair_blockers.h"
 #include "visibility/polygon_blockers.h"
 
@@ -100,17 +102,18 @@ bool ChangingPairs::mover_near(const ElementPair& pair) const {
     });
 }
 
-Change ChangingPairs::unshaded(const ElementPair& pair) const {
+Change ChangingPairs::unshaded(const ElementPair& pair, double step_m) const {
+    if (step_m > 0.0 && visibility::separation(ends_[pair.i], ends_[pair.j]) < step_m) return Change::Near;
     return kernel::cut_by_horizon((*elements_)[pair.i], (*elements_)[pair.j]) ? Change::Horizon
                                                                               : Change::Clear;
 }
 
-Change ChangingPairs::change(std::size_t k) const {
+Change ChangingPairs::change(std::size_t k, double step_m) const {
     const ElementPair& pair = pairs_[k];
     if (kinds_[k] == Kind::Resting && !mover_near(pair)) return Change::None;
     if (kinds_[k] == Kind::Moving) {
         if (!kernel::may_exchange((*elements_)[pair.i], (*elements_)[pair.j])) return Change::Zero;
-        if (!options_.occlusion || occluders_.empty()) return unshaded(pair);
+        if (!options_.occlusion || occluders_.empty()) return unshaded(pair, step_m);
     }
     thread_local visibility::PairBlockers blockers;
     const Among among = kinds_[k] == Kind::Resting ? Among::Moving : options_.occluders;
@@ -120,13 +123,35 @@ Change ChangingPairs::change(std::size_t k) const {
     const bool between =
         blockers.any_between(ends_[pair.i], ends_[pair.j], occluders_.polygons(), among, counts);
     if (between) return Change::Shaded;
-    return kinds_[k] == Kind::Moving ? unshaded(pair) : Change::None;
+    return kinds_[k] == Kind::Moving ? unshaded(pair, step_m) : Change::None;
+}
+
+Glimpse ChangingPairs::glimpse(std::size_t k) const {
+    constexpr std::size_t stride = 7; // pairs every node with others
+    const ElementShape& a = (*elements_)[pairs_[k].i];
+    const ElementShape& b = (*elements_)[pairs_[k].j];
+    const auto& xs = a.rules[1].nodes;
+    const auto& ys = b.rules[1].nodes;
+    const Among among = kinds_[k] == Kind::Resting ? Among::Moving : options_.occluders;
+    Glimpse sum;
+    double weights = 0.0;
+    for (std::size_t s = 0; s < Glimpse::segments; ++s) {
+        const auto& x = xs[s * xs.size() / Glimpse::segments];
+        const auto& y = ys[(stride * s) % ys.size()];
+        const double weight = x.weight * y.weight, kernel = kernel::kernel_value(x, y);
+        weights += weight;
+        if (!(kernel > 0.0)) continue;
+        sum.whole += weight * kernel;
+        if (!occluders_.occluded(x.position, y.position, among)) sum.visible += weight * kernel;
+    }
+    const double scale = std::sqrt(a.area * b.area) / weights;
+    return {scale * sum.visible, scale * sum.whole};
 }
 
 kernel::TransportBlock ChangingPairs::block(std::size_t k, Change change) const {
     if (change == Change::Zero) return {};
     kernel::TransportOptions options = options_;
-    if (change == Change::Clear || change == Change::Horizon) options.occlusion = false;
+    if (change != Change::Shaded) options.occlusion = false;
     return kernel::transport((*elements_)[pairs_[k].i], (*elements_)[pairs_[k].j], occluders_, options);
 }
 

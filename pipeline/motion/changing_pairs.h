@@ -23,7 +23,15 @@ enum class Change : std::uint8_t {
     Zero,    ///< the elements face away from each other
     Clear,   ///< in relative motion, nothing stands between
     Horizon, ///< the same, and the plane of one cuts the other
+    Near, ///< Clear or Horizon, and moving further in a frame than they are apart: what is exact in one says little of the next
     Shaded ///< something that moves relative to one of both may hide a part: its polygon reaches into the shaft
+};
+
+/// The constant moment of a block as a few segments see it, between points that stay the same.
+struct Glimpse {
+    static constexpr std::size_t segments = 32;
+    double visible = 0.0; ///< past what stands between [1]
+    double whole = 0.0;   ///< with nothing in between [1]
 };
 
 /// Which pairs at rest relative to each other are watched for bodies that come between.
@@ -51,7 +59,10 @@ public:
     void set_poses(std::span<const geometry::Pose> poses, std::span<const std::uint8_t> wanted = {});
 
     /// Of pair number k at the poses set. May run in parallel.
-    Change change(std::size_t k) const;
+    /// @param step_m  how far the two may move relative to each other from one frame to the next [m]; 0: never Near
+    Change change(std::size_t k, double step_m = 0.0) const;
+    /// Its changes tell of shadows that come; it is not exact.
+    Glimpse glimpse(std::size_t k) const;
     /// Its block, integrated. @param change  what change(k) says
     kernel::TransportBlock block(std::size_t k, Change change) const;
 
@@ -66,7 +77,7 @@ private:
     void find_others();
     void bound_movers();
     bool moves(std::size_t element) const { return moving_[rest_[element].object.value] != 0; }
-    Change unshaded(const model::ElementPair& pair) const;
+    Change unshaded(const model::ElementPair& pair, double step_m) const;
     bool mover_near(const model::ElementPair& pair) const;
 
     const model::Coefficients& coefficients_;

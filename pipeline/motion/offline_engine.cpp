@@ -98,7 +98,10 @@ void OfflineEngine::find_runs(ChangingPairs& changing, BodyTracks& tracks, const
         if (frame < frames) {
             tracks.follow(frame + 1, path.times_s[frame], path.poses[frame]);
             changing.set_poses(path.poses[frame]);
-            core::parallel_for(pairs.size(), [&](std::size_t k) { now[k] = changing.change(k); });
+            core::parallel_for(pairs.size(), [&](std::size_t k) {
+                now[k] = changing.change(k, tracks.step(rest[pairs[k].i].object) +
+                                                tracks.step(rest[pairs[k].j].object));
+            });
         } else {
             std::fill(now.begin(), now.end(), Change::None);
         }

@@ -11,7 +11,8 @@ namespace kinelux::motion {
 
 namespace {
 
-constexpr std::uint64_t longest_shaded = 3; ///< frames from one integration to the next where V may vary
+constexpr std::uint64_t longest_shaded = 8; ///< frames from one integration to the next where V may vary
+constexpr std::uint64_t longest_unsure = 3; ///< the same where it may vary by more than a glimpse tells
 constexpr std::uint64_t longest_clear = 16; ///< the same where nothing stands between
 constexpr double better_than_asked =
     3.0;                       ///< most blocks in most frames; with 3 the light is off by half the tolerance
@@ -68,6 +69,12 @@ double OnlineEngine::expected_error(const Memory& memory, double time_s) const {
     return safety * product;
 }
 
+// Whether a few segments see no more of what came or went than the block that is continued.
+bool OnlineEngine::foretold(std::size_t k, const Memory& memory, double constant, double allowed) const {
+    const double change = constant - static_cast<double>(memory.values[0]);
+    return std::abs(changing_.glimpse(k).visible - memory.glimpse.visible - change) <= allowed;
+}
+
 void OnlineEngine::integrate(std::size_t k, double time_s, Memory& memory, Slot& slot) {
     const auto [i, j] = changing_.pairs()[k];
     const std::size_t size = rest_[i].basis.size() * rest_[j].basis.size();
@@ -103,13 +110,14 @@ void OnlineEngine::integrate(std::size_t k, double time_s, Memory& memory, Slot&
     memory.frame = frame_;
     memory.error = std::max(static_cast<float>(block.error), memory.known > 1 ? memory.error : 0.0f);
     memory.norm = frobenius(block.values);
+    memory.glimpse = memory.change == Change::Shaded ? changing_.glimpse(k) : Glimpse{};
     slot.values = std::move(block.values);
 }
 
 OnlineEngine::Slot OnlineEngine::look(std::size_t k, double time_s, const ErrorBudget& budget) {
     const auto [i, j] = changing_.pairs()[k];
     Memory& memory = memories_[k];
-    const Change change = changing_.change(k);
+    const Change change = changing_.change(k, tracks_.step(rest_[i].object) + tracks_.step(rest_[j].object));
     Slot slot{.change = change};
     const std::size_t size = rest_[i].basis.size() * rest_[j].basis.size();
     if (change == memory.change && unmoved(k, memory)) {
@@ -124,25 +132,29 @@ OnlineEngine::Slot OnlineEngine::look(std::size_t k, double time_s, const ErrorB
     if (change == Change::None || change == Change::Zero) return slot;
 
     const double allowed = budget.of(i, j);
-    const std::uint64_t longest =
-        std::min(change == Change::Shaded ? longest_shaded : longest_clear, 2 * memory.gap + 1);
+    // A glimpse resolves no less than what a few of its segments see.
+    constexpr double resolved = 2.0 / Glimpse::segments;
+    const std::uint64_t longest_here = change != Change::Shaded                     ? longest_clear
+                                       : resolved * memory.glimpse.whole <= allowed ? longest_shaded
+                                                                                    : longest_unsure;
+    const std::uint64_t longest = std::min(longest_here, 2 * memory.gap + 1);
     const std::uint64_t since = frame_ - memory.frame;
-    if (memory.known > 1 && since < longest) {
+    if (memory.known > 1 && since < longest && change != Change::Near) {
         const double drift = memory.rate * static_cast<double>(since);
+        // The edge of a shadow may come after any number of frames in which nothing changed.
+        const double bend = change == Change::Clear ? 0.0 : bends * drift;
+        const double expected = std::max(expected_error(memory, time_s), bend);
         if (memory.norm + 2.0 * drift <= nothing * allowed) {
             slot.values.assign(memory.values.begin(),
                                memory.values.begin() + static_cast<std::ptrdiff_t>(size));
             slot.error = static_cast<double>(memory.error) + nothing * allowed;
-            return slot;
-        }
-        // The edge of a shadow may come after any number of frames in which nothing changed.
-        const double bend = change == Change::Clear ? 0.0 : bends * drift;
-        const double expected = std::max(expected_error(memory, time_s), bend);
-        if (memory.measured && expected <= allowed) {
+        } else if (memory.measured && expected <= allowed) {
             slot.values = continued(memory, time_s, size);
             slot.error = static_cast<double>(memory.error) + expected;
-            return slot;
         }
+        if (!slot.values.empty() &&
+            (change != Change::Shaded || foretold(k, memory, slot.values[0], allowed)))
+            return slot;
     }
     integrate(k, time_s, memory, slot);
     return slot;

@@ -48,6 +48,7 @@ private:
         std::uint64_t gap = 1;                    ///< frames between the last two
         double third = 0.0;        ///< error of continuing per product of time differences [1/s3]
         double norm = 0.0;         ///< of the newest
+        Glimpse glimpse;           ///< then, where something stands between
         double rate = 0.0;         ///< largest difference of two successive ones per frame
         float error = 0.0f;        ///< of integration, the largest of them
         std::vector<float> values; ///< of the blocks, newest first
@@ -64,6 +65,7 @@ private:
     bool unmoved(std::size_t k, const Memory& memory) const;
     std::vector<double> continued(const Memory& memory, double time_s, std::size_t size) const;
     double expected_error(const Memory& memory, double time_s) const;
+    bool foretold(std::size_t k, const Memory& memory, double constant, double allowed) const;
     void integrate(std::size_t k, double time_s, Memory& memory, Slot& slot);
 
     std::span<const geometry::ElementShape> rest_;

@@ -34,7 +34,8 @@ struct SensorReading {
 
 /// Points spread evenly over the area of all faces that do not emit, at a time; on faces that exchange light on both
 /// sides, either side is judged with equal chance. A mesh without two_sided flags counts as two-sided unless its
-/// material says Front.
+/// material says Front. Where a face of another object lies in the same plane, looking the same way, neither has one:
+/// which of them is seen there is not defined.
 /// @param count  about how many, 1..1e6
 std::vector<SensorPoint> sensor_points(const model::Scene& scene, double time_s, std::uint32_t count,
                                        std::uint64_t seed);

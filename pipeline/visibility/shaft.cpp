@@ -157,6 +157,35 @@ ShaftEnd shaft_end(const geometry::ElementShape& element) {
     return shaft_end(points, normal);
 }
 
+double separation(const ShaftEnd& a, const ShaftEnd& b) {
+    double largest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        largest = std::max({largest, a.box_low[axis] - b.box_high[axis], b.box_low[axis] - a.box_high[axis]});
+    const auto extent = [](const ShaftEnd& end, const Vec3& direction) {
+        const Vec3 middle = 0.5 * (end.box_low + end.box_high);
+        const double centre = glm::dot(direction, middle);
+        if (!end.planar()) {
+            const double half = glm::dot(glm::abs(direction), 0.5 * (end.box_high - end.box_low));
+            return std::pair(centre - half, centre + half);
+        }
+        std::pair range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+        for (std::size_t k = 0; k < end.count; ++k) {
+            const double at = glm::dot(direction, end.points[k]);
+            range = {std::min(range.first, at), std::max(range.second, at)};
+        }
+        return range;
+    };
+    const Vec3 line = b.box_low + b.box_high - a.box_low - a.box_high;
+    for (const Vec3& direction : {a.normal, b.normal, line}) {
+        const double length = glm::length(direction);
+        if (!(length > 0.0)) continue;
+        const auto [low_a, high_a] = extent(a, direction / length);
+        const auto [low_b, high_b] = extent(b, direction / length);
+        largest = std::max({largest, low_a - high_b, low_b - high_a});
+    }
+    return largest;
+}
+
 Shaft::Shaft(const ShaftEnd& a, const ShaftEnd& b) {
     size_ = glm::distance(glm::min(a.box_low, b.box_low), glm::max(a.box_high, b.box_high));
     touch_ = relative_touch * size_;

@@ -38,6 +38,10 @@ ShaftEnd shaft_end(const Vec3& low, const Vec3& high);
 /// An element: the hull of its outline where it is planar, else its box.
 ShaftEnd shaft_end(const geometry::ElementShape& element);
 
+/// How far two ends are apart at least, by planes between them: of their own, across the line between their middles, of
+/// the axes. 0 where none of these parts them. [m]
+double separation(const ShaftEnd& a, const ShaftEnd& b);
+
 /// Where the segments between two elements run that leave one in front and arrive at the other in front: an
 /// intersection of half spaces. Exact for two convex polygons, a superset where a box is involved. What only touches it
 /// is outside: neighbours that share an edge with an element, or lie in its plane, hide nothing.

@@ -72,6 +72,51 @@ TEST(ChangingPairs, that_a_thin_mover_crosses_are_not_missed) {
     EXPECT_GT(shaded, 10u); // floor to ceiling alone: four elements each
 }
 
+TEST(ChangingPairs, glimpses_follow_the_constants_of_their_blocks) {
+    PreparedRoom prepared(support::sliding_panel(5));
+    ChangingPairs changing(prepared.coefficients, prepared.shapes, prepared.room.plan, prepared.occluders,
+                           prepared.room.options);
+    std::vector<double> before(changing.pairs().size(), 0.0), glimpsed = before;
+    double off = 0.0, size = 0.0;
+    for (std::uint32_t frame = 0; frame < 5; ++frame) {
+        changing.set_poses(prepared.poses(frame));
+        for (std::size_t k = 0; k < changing.pairs().size(); ++k) {
+            if (changing.change(k) != Change::Shaded) continue;
+            const kernel::TransportBlock block = changing.block(k, Change::Shaded);
+            const double now = block.values.empty() ? 0.0 : block.values[0];
+            const Glimpse glimpse = changing.glimpse(k);
+            EXPECT_LE(glimpse.visible, glimpse.whole);
+            const double change = now - before[k], seen = glimpse.visible - glimpsed[k];
+            off += (change - seen) * (change - seen);
+            size += change * change;
+            before[k] = now;
+            glimpsed[k] = glimpse.visible;
+        }
+    }
+    EXPECT_GT(size, 0.0);
+    EXPECT_LT(std::sqrt(off / size), 0.6); // coarse: without a glimpse it is 1
+}
+
+TEST(ChangingPairs, that_move_further_than_they_are_apart_are_near) {
+    MovingRoom room(3);
+    const ObjectId panel = room.body("panel");
+    room.panel(panel, Vec3(0.1, 0.6, 0.01), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0));
+    room.slide(panel, Vec3(1.0, 0.0, 0.0));
+    PreparedRoom prepared(std::move(room));
+    ChangingPairs changing(prepared.coefficients, prepared.shapes, prepared.room.plan, prepared.occluders,
+                           prepared.room.options);
+    changing.set_poses(prepared.poses(1));
+    const auto near = [&](double step_m) {
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < changing.pairs().size(); ++k)
+            count += changing.change(k, step_m) == Change::Near ? 1 : 0;
+        return count;
+    };
+    EXPECT_EQ(near(0.0), 0u);
+    EXPECT_EQ(near(0.009), 0u);
+    EXPECT_EQ(near(0.011), 9u); // above one, two, two and four elements of the floor
+}
+
 TEST(ChangingPairs, of_a_mover_and_a_wall_behind_a_shelf_equal_a_scene_built_anew) {
     MovingRoom room(3);
     const ObjectId lamp = room.body("lamp"), shelf = room.body("shelf");

@@ -54,6 +54,24 @@ TEST(SensorPoints, both_sides_of_sheets_are_judged) {
     EXPECT_NEAR(up, 500, 60);
 }
 
+TEST(SensorPoints, none_lie_below_a_face_of_another_object_in_the_same_plane) {
+    SceneBuilder builder;
+    const MaterialId grey = builder.material({0.5}, {0.0}, model::Sides::Front);
+    builder.object({level_square(2.0, 0.5, true)}, grey);
+    builder.object({level_square(1.0, 0.5, true)}, builder.material({0.5}, {1.0}, model::Sides::Front));
+    builder.object({level_square(1.5, 0.5, false)}, grey); // looks the other way
+    const auto points = sensor_points(builder.scene, 0.0, 4096, 5);
+    std::map<std::uint32_t, int> count;
+    for (const SensorPoint& point : points) {
+        ++count[point.object.value];
+        if (point.object.value == 0) {
+            EXPECT_GT(std::max(std::abs(point.position.x), std::abs(point.position.y)), 0.5);
+        }
+    }
+    EXPECT_NEAR(count[0], 4096 * 3.0 / 6.25, 80);
+    EXPECT_NEAR(count[2], 4096 * 2.25 / 6.25, 80);
+}
+
 TEST(SensorPoints, a_scene_of_lamps_has_none) {
     SceneBuilder builder;
     builder.object({level_square(2.0, 0.5, true)}, builder.material({0.5}, {1.0}));

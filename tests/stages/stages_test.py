@@ -9,8 +9,12 @@ import pathlib
 import re
 import signal
 import subprocess
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
+
+import h5py
+import numpy
 
 import scenes
 from programs import BIN, PROGRAMS, ROOT, STAGES, StageTest, hashes
@@ -182,7 +186,7 @@ class BadInput(StageTest):
         self.assertEqual(hashes(self.case), self.before)
 
     def test_memory_beyond_the_limit_is_refused_before_work(self):
-        self.assert_fails(6, r"MiB.*--memory-limit", "kinelux-coefficients", "case", "--memory-limit", "0.01")
+        self.assert_fails(6, r"MiB.*--memory-limit", "kinelux-coefficients", "case", "--resume", "no", "--memory-limit", "0.01")
         self.assertEqual(hashes(self.case), self.before)
 
     def test_not_converged_is_written_marked_and_stays_5(self):
@@ -229,6 +233,23 @@ class MovingScene(StageTest):
 
         frames = json.loads((case / "solve.json").read_text(encoding="utf-8"))["frames"]
         self.assertGreater(frames[1]["blocks_recomputed"], 0)
+
+    def test_shadows_of_the_publication_cost_what_exact_ones_do_not(self):
+        scene = scenes.write_room(self.folder, moving=True, frames=4, target="3%")
+        self.run_ok("kinelux", "run", scene, "-o", "case")
+
+        def radiosity(*options):
+            self.run_ok("kinelux-solve", "case", *options)
+            with h5py.File(self.folder / "case/solution.h5") as file:
+                return numpy.array(file["radiosity"])
+
+        exact = radiosity("--engine", "exact")
+        off = {word: numpy.linalg.norm(radiosity("--engine", "paper", "--paper-shadows", word) - exact)
+                     / numpy.linalg.norm(exact) for word in ("exact", "publication", "sources-too")}
+        self.assertLess(off["exact"], 1e-3)
+        self.assertLess(off["exact"], 0.1 * off["publication"])
+        self.assertLess(off["publication"], off["sources-too"])
+        self.assertLess(off["sources-too"], 0.3)
 
     def test_frames_option_solves_and_exports_a_part(self):
         scene = scenes.write_room(self.folder, moving=True)

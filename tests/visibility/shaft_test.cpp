@@ -40,6 +40,28 @@ Polygon speck(const Vec3& at, core::Random& random, double size) {
     return polygon;
 }
 
+TEST(Separation, is_a_lower_bound_of_the_distance_and_sharp_across_gaps) {
+    core::Random random(7);
+    for (int n = 0; n < 200; ++n) {
+        const Polygon a = speck(Vec3(0.0), random, 1.0);
+        const Polygon b = speck(Vec3(2.0 * random.next(), random.next(), random.next()), random, 1.0);
+        double nearest = 1e9;
+        for (int k = 0; k < 300; ++k)
+            nearest = std::min(nearest, glm::distance(point_in(a, random), point_in(b, random)));
+        EXPECT_LE(separation(end_of(a), end_of(b)), nearest);
+        EXPECT_NEAR(separation(end_of(a), end_of(b)), separation(end_of(b), end_of(a)), 1e-14);
+    }
+    for (const double gap : {1e-6, 0.1, 3.0}) {
+        const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(Vec3(1, 2, 3)));
+        Polygon below, above;
+        for (const Vec3& at : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) {
+            below.push_back(turn * at);
+            above.push_back(turn * (at + Vec3(0.3, 0.2, gap)));
+        }
+        EXPECT_NEAR(separation(end_of(below), end_of(above)), gap, 1e-12);
+    }
+}
+
 TEST(Shaft, nothing_that_crosses_a_segment_between_two_fronts_is_missed) {
     core::Random random(5);
     int segments = 0;
