@@ -46,7 +46,7 @@ void add_spike(Surface& grid, std::uint32_t n, std::uint32_t cell) {
     grid.triangles.push_back({first, first + 1, first + 2});
 }
 
-// More faces than fit into one batch of pairs, so that batches are joined as well.
+// The boxes of more pairs meet than are tested at a time (2^20), so that batches are joined as well.
 TEST(Intersections, injected_crossings_are_found_and_nothing_else) {
     constexpr std::uint32_t n = 330;
     constexpr std::size_t faults = 200;
