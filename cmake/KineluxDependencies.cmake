@@ -17,6 +17,8 @@ find_package(CGAL CONFIG REQUIRED)
 include(CGAL_Eigen3_support)
 find_package(VTK 9.1 CONFIG REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
 find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(OpenCASCADE CONFIG REQUIRED)
+set(kinelux_cad_libraries TKXDESTEP TKXDEIGES TKXCAF TKLCAF TKMesh TKBRep TKTopAlgo TKMath TKernel)
 
 find_program(KINELUX_CCACHE ccache)
 if(KINELUX_CCACHE)

@@ -52,6 +52,12 @@ ImportedMeshes read_gltf(const MeshFile& file);
 /// @param hint  format by content where the extension says something else, e.g. "ply"; empty: by path
 ImportedMeshes read_assimp(const MeshFile& file, const std::string& hint);
 
+enum class CadFormat { Step, Iges };
+/// Parts and assemblies by OpenCASCADE: one object an instance, under its names, colours as reflectances, in millimetres.
+/// Faces become facets that are at most 2e-4 of the model's size off the exact surface and share the points of common edges.
+/// @throws FileError, GeometryError  as read_mesh
+ImportedMeshes read_cad(const MeshFile& file, CadFormat format);
+
 /// Collects the materials of one file: RGB to channels, names made unique, impossible reflectances put right and noted.
 class MaterialCollector {
 public:

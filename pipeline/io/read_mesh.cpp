@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/mesh_import.h"
+#include "io/rehearse.h"
 
 namespace kinelux::io {
 
@@ -41,6 +42,13 @@ bool is_obj(std::string_view bytes) {
     return false;
 }
 
+// IGES has lines of 80 characters, the first of them with S in column 73.
+bool is_iges(std::string_view bytes) {
+    constexpr std::size_t column = 72;
+    const std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
+    return line.size() == 80 && line[column] == 'S' && line.substr(column + 1).find_first_not_of(" 0123456789") == std::string_view::npos;
+}
+
 // The format by the first bytes where they are unmistakable, else empty.
 std::string format_by_content(std::string_view bytes) {
     const std::size_t text = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
@@ -50,7 +58,8 @@ std::string format_by_content(std::string_view bytes) {
     if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return "ply";
     if (bytes.starts_with("OFF\n") || bytes.starts_with("OFF\r") || bytes.starts_with("OFF ")) return "off";
     if (head.find("<COLLADA") != std::string_view::npos) return "dae";
-    if (bytes.starts_with("ISO-10303-21")) return "step";
+    if (head.starts_with("ISO-10303-21")) return "step";
+    if (is_iges(bytes)) return "iges";
     if (is_binary_stl(bytes)) return "stl";
     if (head.starts_with("solid") && head.find("facet") != std::string_view::npos) return "stl";
     return {};
@@ -79,10 +88,18 @@ ImportedMeshes dispatch(const MeshFile& file) {
     if (format == "obj") return read_obj(file);
     if (format == "gltf" || format == "glb") return read_gltf(file);
     const std::string_view head = std::string_view(file.bytes).substr(0, 4096);
-    if (format == "step" && head.find("IFC") == std::string_view::npos)
-        throw core::FileError(file.name() +
-                              ": is a CAD STEP file, which is not read; export it as OBJ or glTF");
-    return read_assimp(file, same_format(format, extension) ? "" : format);
+    const bool step = format == "step" || format == "stp";
+    const bool iges = format == "iges" || format == "igs";
+    const bool cad = iges || (step && head.find("IFC") == std::string_view::npos);
+    const auto import = [&] {
+        if (cad) return read_cad(file, iges ? CadFormat::Iges : CadFormat::Step);
+        return read_assimp(file, same_format(format, extension) ? "" : format);
+    };
+    constexpr double s_per_byte = 2e-6; // honest files take a fraction of that
+    ImportLimits limits;
+    limits.cpu_s += s_per_byte * static_cast<double>(file.bytes.size());
+    rehearse(file.name(), limits, [&] { import(); });
+    return import();
 }
 
 } // namespace

@@ -472,6 +472,29 @@ class Cornell(StageTest):
                           "sensors.txt")
 
 
+class CadAssembly(StageTest):
+    def test_instances_keep_names_sizes_and_colours_through_the_stages(self):
+        scene = ROOT / "data/scenes/workshop/workshop.toml"
+        self.run_ok("kinelux", "run", scene, "-o", "case", "--accuracy", "30%", "--element-size", "1.5", "--frames", "0,1")
+        record = json.loads((self.folder / "case/clean.json").read_text(encoding="utf-8"))
+        area = {part["object"]: part["area_out_m2"] for part in record["objects"]}
+        self.assertAlmostEqual(area["walls"], 2 * (5.4 * 4.4 + 5.4 * 3.2 + 4.4 * 3.2) + 2 * (5 * 4 + 5 * 2.8 + 4 * 2.8), 6)
+        column = 2 * math.pi * 0.25 * (0.25 + 2.6)
+        self.assertLess(abs(area["column"] - column), 5e-3 * column)
+        materials = json.loads((self.folder / "case/scene.json").read_text(encoding="utf-8"))["materials"]
+        self.assertTrue(any(max(abs(a - b) for a, b in zip(m["reflectance"], (0.55, 0.35, 0.2))) < 1e-3 for m in materials))
+        frames = json.loads((self.folder / "case/solve.json").read_text(encoding="utf-8"))["frames"]
+        self.assertTrue(all(frame["converged"] for frame in frames))
+
+    def test_broken_files_are_refused_and_nothing_is_lost(self):
+        whole = (ROOT / "data/scenes/workshop/workshop.step").read_bytes()
+        (self.folder / "half.step").write_bytes(whole[:len(whole) // 2])
+        self.assert_fails(3, r"half\.step: cannot be read as a CAD model", "kinelux", "run", "half.step")
+        (self.folder / "other.igs").write_bytes(whole)
+        shown = self.run_ok("kinelux", "info", "other.igs").stdout
+        self.assertIn("leg 4", shown)
+
+
 class ForeignModels(StageTest):
     """Meshes of others, each in a lit room as large as it is."""
 
