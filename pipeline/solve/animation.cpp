@@ -157,15 +157,22 @@ model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::Fr
 
 namespace {
 
-/// What the basis of an element cannot hold of the indirect irradiance, judged by what its highest degree holds: of a
-/// smooth function each degree is smaller than the one before. A constant says nothing of its own error; a tenth of it
-/// is assumed. @return  integral over the element of the squared error, all channels
+/// What the basis of an element cannot hold of the indirect irradiance: degrees fall on as they fell from the last but one
+/// to the highest, but no faster than by `fastest_fall`, which measured errors ask for (docs/accuracy-and-cost.md). A constant says
+/// nothing of its own error; a tenth of it is assumed. @return  integral over the element of the squared error, all channels
 double discretisation_error(std::span<const double> irradiance, std::size_t functions, std::size_t channels) {
     constexpr double assumed_for_constants = 0.1;
     if (functions == 1) return assumed_for_constants * assumed_for_constants * square_sum(irradiance);
-    std::size_t lower = 0; // functions below the highest degree
-    for (std::size_t degree = 1; lower + degree < functions; ++degree) lower += degree;
-    return square_sum(irradiance.subspan(lower * channels));
+    constexpr double fastest_fall = 0.3;
+    std::size_t lower = 0, highest = 0; // functions below the highest degree, and of it
+    for (std::size_t degree = 1; lower + degree < functions; ++degree) {
+        highest = degree;
+        lower += degree;
+    }
+    const double last = square_sum(irradiance.subspan(lower * channels));
+    const double before = square_sum(irradiance.subspan((lower - highest) * channels, highest * channels));
+    const double fall = before > 0.0 ? last / before : 1.0;
+    return last * std::clamp(fall, fastest_fall * fastest_fall, 1.0);
 }
 
 /// Adds the squared errors of links, each spread over the elements of its two nodes by their area.

@@ -55,7 +55,7 @@ motion::Importance importance_of(const Animation& animation, motion::Engine& eng
 model::BlockSet blocks_at(const model::BlockSet& static_blocks, const motion::FrameBlocks& frame);
 
 /// RMS error of irradiance on each element that is to be expected: sqrt((sum_j (error_ij ||B_j||)^2 + basis_i) / A_i + r^2),
-/// of the blocks (errors independent of each other), of the basis (what its highest degree holds of the indirect
+/// of the blocks (errors independent of each other), of the basis (how its degrees fall, in the indirect
 /// irradiance) and of the solver's residual. Errors of links are spread over the elements of their groups. An estimate,
 /// not a bound.
 /// @param frame  with radiosity, indirect irradiance and residual

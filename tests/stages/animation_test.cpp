@@ -211,15 +211,17 @@ TEST(IrradianceErrors, follow_block_errors_and_brightness) {
     EXPECT_FLOAT_EQ(errors[1], 0.75f); // 0.5 * 3 / sqrt(4)
 }
 
-TEST(IrradianceErrors, take_the_highest_degree_for_what_the_basis_leaves_out) {
-    const model::UnknownLayout layout{{0, 6, 7}}; // degree 2, degree 0
-    const std::vector<double> areas{4.0, 1.0}, exitance(7, 0.0);
+TEST(IrradianceErrors, let_degrees_fall_on_for_what_the_basis_leaves_out) {
+    const model::UnknownLayout layout{{0, 6, 7, 10, 13}}; // degree 2, 0, 1, 1
+    const std::vector<double> areas{4.0, 1.0, 1.0, 1.0}, exitance(13, 0.0);
     model::FrameSolution frame;
-    frame.radiosity.assign(7, 0.0);
-    frame.irradiance_indirect = {9.0, 5.0, 5.0, 1.0, 2.0, 2.0, 7.0};
+    frame.radiosity.assign(13, 0.0);
+    frame.irradiance_indirect = {9.0, 6.0, 0.0, 1.0, 2.0, 2.0, 7.0, 9.0, 0.9, 0.0, 1.0, 3.0, 4.0};
     const auto errors = solve::irradiance_errors(layout, {}, areas, exitance, frame, 1);
-    EXPECT_FLOAT_EQ(errors[0], 1.5f); // sqrt((1 + 4 + 4) / 4)
-    EXPECT_FLOAT_EQ(errors[1], 0.7f); // a tenth of a constant
+    EXPECT_FLOAT_EQ(errors[0], 0.75f); // sqrt((1 + 4 + 4) / 4) * 3 / 6
+    EXPECT_FLOAT_EQ(errors[1], 0.7f);  // a tenth of a constant
+    EXPECT_FLOAT_EQ(errors[2], 0.27f); // no faster than by 0.3
+    EXPECT_FLOAT_EQ(errors[3], 5.0f);  // not at all
 }
 
 } // namespace
