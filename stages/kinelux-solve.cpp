@@ -8,6 +8,7 @@
 #include "cli/stage.h"
 #include "core/log.h"
 #include "engines.h"
+#include "flux_balance.h"
 #include "light_case.h"
 #include "reports.h"
 #include "savers.h"
@@ -101,6 +102,9 @@ int main(int argc, char** argv) {
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });
         stages::report_engine(engine, stage);
+        std::vector<MaterialId> materials;
+        for (const auto& element : light.elements) materials.push_back(element.material);
+        stages::report_balances(light.scene, materials, areas, solution, stage);
         return stages::report_solution(solution, light.scene.accuracy.target, stage);
     });
 }

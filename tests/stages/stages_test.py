@@ -193,6 +193,7 @@ class BadInput(StageTest):
         self.run_ok("kinelux-solve", "case", "--max-sweeps", "1", "--tolerance", "1e-9", code=5)
         record = json.loads((self.case / "solve.json").read_text(encoding="utf-8"))
         self.assertFalse(record["frames"][0]["converged"])
+        self.assertGreater(abs(record["frames"][0]["unsolved_flux"]), 1e-3 * record["frames"][0]["emitted_flux"])
         again = self.run_ok("kinelux-solve", "case", "--max-sweeps", "1", "--tolerance", "1e-9", "--if-stale", code=5)
         self.assertIn("up to date", again.stderr)
         self.run_ok("kinelux-export", "case")
@@ -231,8 +232,15 @@ class MovingScene(StageTest):
         for data in datasets:
             self.assertTrue((case / data.get("file")).exists())
 
-        frames = json.loads((case / "solve.json").read_text(encoding="utf-8"))["frames"]
-        self.assertGreater(frames[1]["blocks_recomputed"], 0)
+        record = json.loads((case / "solve.json").read_text(encoding="utf-8"))
+        self.assertGreater(record["frames"][1]["blocks_recomputed"], 0)
+        self.assertEqual(record["flux_unit"], "lm")
+        for frame in record["frames"]:
+            self.assertAlmostEqual(frame["emitted_flux"], 2 * 0.36 * (10 + 5), 6)
+            self.assertLess(abs(frame["unsolved_flux"]), 1e-3 * frame["emitted_flux"])
+            self.assertEqual(frame["negative_flux"], 0)
+            # The room is closed.
+            self.assertLess(abs(frame["lost_flux"]), 0.02 * frame["emitted_flux"])
 
     def test_shadows_of_the_publication_cost_what_exact_ones_do_not(self):
         scene = scenes.write_room(self.folder, moving=True, frames=4, target="3%")
