@@ -107,6 +107,14 @@ std::vector<std::vector<double>> grid_values(const model::GridMeter& grid, const
     return values;
 }
 
+/// A quotient and its error by the relative errors of both; nothing where it is not defined.
+void add_quotient(const std::string& meter, const std::string& quantity, std::size_t channel,
+                  const Vec2& part, const Vec2& whole, Table& table) {
+    if (!(whole.x > 0.0)) return;
+    const double value = part.x / whole.x;
+    table.add(meter, quantity, channel, value, "1", std::hypot(part.y, value * whole.y) / whole.x);
+}
+
 void add_grid(const model::GridMeter& grid, const std::vector<std::vector<double>>& values,
               std::size_t channels, const std::string& unit, Table& table) {
     for (std::size_t c = 0; c < channels; ++c) {
@@ -122,6 +130,11 @@ void add_grid(const model::GridMeter& grid, const std::vector<std::vector<double
         table.add(grid.name, "mean irradiance", c, sum / n, unit, error / n);
         table.add(grid.name, "least irradiance", c, values[least][c], unit, values[least][channels]);
         table.add(grid.name, "greatest irradiance", c, values[greatest][c], unit, values[greatest][channels]);
+        // EN 12464-1: U0 = least / mean; U1 = least / greatest.
+        const Vec2 lowest(values[least][c], values[least][channels]);
+        const Vec2 highest(values[greatest][c], values[greatest][channels]);
+        add_quotient(grid.name, "uniformity U0", c, lowest, {sum / n, error / n}, table);
+        add_quotient(grid.name, "uniformity U1", c, lowest, highest, table);
         for (std::size_t p = 0; p < values.size(); ++p) {
             const std::string place =
                 "[" + std::to_string(p % grid.count_u) + "," + std::to_string(p / grid.count_u) + "]";

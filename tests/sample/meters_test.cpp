@@ -80,6 +80,32 @@ TEST(Meters, a_sensor_reads_lamps_in_closed_form_and_not_what_they_emit_twice) {
     EXPECT_NEAR(reading->value, 5.0 * kernel::point_to_polygon({0, 0, 0}, {0, 0, 1}, lamp), 1e-12);
 }
 
+TEST(Meters, grids_have_the_uniformities_of_their_points) {
+    model::Scene scene = support::plain_scene(1, 0.5, 0.0);
+    scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});
+    const model::PatchSet set{
+        {support::rectangle({-0.5, -0.5, 1}, {0, 1, 0}, {1, 0, 0}, ObjectId(0), MaterialId(1))}, {}};
+    scene.meters = {{"desk", {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 4, 4}};
+    const auto readings = read(set, scene, 2, 0.0, 4.0);
+    double least = 1e9, greatest = 0.0, sum = 0.0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) {
+            const auto one =
+                find(readings, "desk[" + std::to_string(i) + "," + std::to_string(j) + "]", "irradiance");
+            ASSERT_TRUE(one);
+            least = std::min(least, one->value);
+            greatest = std::max(greatest, one->value);
+            sum += one->value / 16.0;
+        }
+    const auto u0 = find(readings, "desk", "uniformity U0"), u1 = find(readings, "desk", "uniformity U1");
+    ASSERT_TRUE(u0 && u1);
+    EXPECT_DOUBLE_EQ(u0->value, least / sum);
+    EXPECT_DOUBLE_EQ(u1->value, least / greatest);
+    EXPECT_EQ(u0->unit, "1");
+    EXPECT_LT(u1->value, u0->value);
+    EXPECT_GT(u0->error_estimate, 0.0);
+}
+
 TEST(Meters, a_grid_that_follows_a_motion_is_read_where_it_is_and_faces_as_it_is_turned) {
     model::Scene scene = support::plain_scene(1, 0.5, 0.0);
     scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});
