@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -329,6 +330,28 @@ model::UnknownLayout unknown_layout(std::span<const ElementShape> elements) {
     for (const ElementShape& element : elements)
         layout.offsets.push_back(layout.offsets.back() + static_cast<std::uint32_t>(element.basis.size()));
     return layout;
+}
+
+RowSample sample_rows(std::span<const ElementShape> rest_elements, const model::Scene& scene,
+                      const model::Plan& plan, const visibility::Occluders& occluders,
+                      const kernel::TransportOptions& options, std::size_t count) {
+    const RowBuilder builder(rest_elements, scene, plan, occluders, options);
+    RowSample sample;
+    count = std::min(count, rest_elements.size());
+    // Rows hold the pairs j >= i, so they grow shorter: the middle of each of `count` equal parts.
+    for (std::size_t k = 0; k < count; ++k)
+        sample.rows.push_back((2 * k + 1) * rest_elements.size() / (2 * count));
+    sample.seconds.resize(count);
+    std::vector<Row> rows(count);
+    core::parallel_for(count, [&](std::size_t k) {
+        const auto began = std::chrono::steady_clock::now();
+        rows[k] = builder.build(sample.rows[k]);
+        sample.seconds[k] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    });
+    sample.coefficients.layout = unknown_layout(rest_elements);
+    sample.coefficients.degree = plan.degree;
+    for (const Row& row : rows) append(row, sample.coefficients);
+    return sample;
 }
 
 model::Coefficients compute_coefficients(std::span<const ElementShape> rest_elements,

@@ -61,6 +61,17 @@ model::Coefficients compute_coefficients(std::span<const geometry::ElementShape>
                                          const kernel::TransportOptions& options, double memory_limit_mib,
                                          const GroupingOptions& grouping = {}, Checkpoint checkpoint = {});
 
+/// A few of the rows that compute_coefficients would compute, evenly spread, and the time each took: what all would take.
+struct RowSample {
+    std::vector<std::size_t> rows;
+    std::vector<double> seconds;      ///< of one thread, per row [s]
+    model::Coefficients coefficients; ///< of these rows alone
+};
+/// Without groups. @param count  rows, at least 1; all where there are fewer @param others  as compute_coefficients
+RowSample sample_rows(std::span<const geometry::ElementShape> rest_elements, const model::Scene& scene,
+                      const model::Plan& plan, const visibility::Occluders& occluders,
+                      const kernel::TransportOptions& options, std::size_t count);
+
 /// Form factors between groups of elements (objects, or patches): F_ab is the share of what leaves a uniformly that
 /// reaches b; rows of a closed scene sum to 1.
 struct FormFactor {

@@ -62,9 +62,11 @@ def notes(study):
             lines.append(f"Time grows like the measured error to the power {slope['slope']:.2f}{name}" + (
                 f"; 1 % takes {slope['time_1_to_10_percent']:.1f} times as long as 10 %."
                 if slope["time_1_to_10_percent"] else "."))
-    for row in study["left_out"]:
-        expected = f": about {row['expected_seconds']:.0f} s" if row["expected_seconds"] else ""
-        lines.append(f"Left out for the time limit: {row['row']}{expected}. The same command with more time goes on there.")
+    if study["left_out"]:
+        rows = [row["row"].removeprefix("auto-degree-auto-") + (f" (about {row['expected_seconds']:.0f} s)"
+                                                                 if row["expected_seconds"] else "")
+                for row in study["left_out"]]
+        lines.append(f"Left out for the time limit: {', '.join(rows)}. The same command with more time goes on there.")
     return lines
 
 
