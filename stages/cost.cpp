@@ -30,7 +30,8 @@ Predicted extrapolated(const std::vector<double>& values, std::size_t all) {
     for (const double value : values) squares += (value - sum / count) * (value - sum / count);
     const double scale = static_cast<double>(all) / count;
     const double rest = 1.0 - count / static_cast<double>(all); // nothing is uncertain of rows that are known
-    return {scale * sum, scale * std::sqrt(std::max(rest, 0.0) * squares * count / std::max(count - 1.0, 1.0))};
+    return {scale * sum,
+            scale * std::sqrt(std::max(rest, 0.0) * squares * count / std::max(count - 1.0, 1.0))};
 }
 
 // What the pairs of the sampled rows that change take in one frame, on all threads.
@@ -76,7 +77,7 @@ double seconds_per_value(const model::Coefficients& sample, std::size_t channels
 } // namespace
 
 Cost predict_cost(LightCase& light, std::uint64_t seed) {
-    constexpr std::size_t share = 50, fewest = 4, most = 64;
+    constexpr std::size_t share = 50, fewest = 32, most = 64;
     const std::size_t all = light.elements.size();
     Cost cost;
     const auto began = Clock::now();
@@ -97,8 +98,8 @@ Cost predict_cost(LightCase& light, std::uint64_t seed) {
     const auto& layout = sample.coefficients.layout;
     std::vector<double> blocks(cost.rows, 0.0), bytes(cost.rows, 0.0);
     for (const model::BlockEntry& entry : sample.coefficients.static_blocks.entries) {
-        const auto row = static_cast<std::size_t>(
-            std::find(sample.rows.begin(), sample.rows.end(), entry.i) - sample.rows.begin());
+        const auto row = static_cast<std::size_t>(std::find(sample.rows.begin(), sample.rows.end(), entry.i) -
+                                                  sample.rows.begin());
         blocks[row] += 1.0;
         bytes[row] += static_cast<double>(layout.count(entry.i) * layout.count(entry.j) * sizeof(float) +
                                           sizeof(model::BlockEntry));
@@ -127,8 +128,9 @@ Cost predict_cost(LightCase& light, std::uint64_t seed) {
         cost.blocks_per_frame = scale * frame.blocks;
         cost.solve_s.value += like_frames * scale * frame.seconds;
     }
-    cost.solve_s.error =
-        cost.coefficients_s.value > 0.0 ? cost.solve_s.value * cost.coefficients_s.error / cost.coefficients_s.value : 0.0;
+    cost.solve_s.error = cost.coefficients_s.value > 0.0
+                             ? cost.solve_s.value * cost.coefficients_s.error / cost.coefficients_s.value
+                             : 0.0;
     return cost;
 }
 

@@ -21,7 +21,7 @@ struct Cost {
     double blocks_per_frame = 0.0;     ///< that change and would be integrated by the exact engine
 };
 
-/// Computes a fiftieth of the block rows (4 to 64 of them), and what changes of these in three frames.
+/// Computes a fiftieth of the block rows (32 to 64 of them), and what changes of these in three frames.
 /// @param light  up to its plan, without groups: at most GroupingOptions::most_elements elements
 Cost predict_cost(LightCase& light, std::uint64_t seed);
 

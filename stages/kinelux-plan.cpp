@@ -14,13 +14,14 @@ namespace {
 
 void report_cost(const stages::Cost& cost, cli::Stage& stage) {
     if (!stage.quiet())
-        fmt::print("  predicted from {} of {} block rows, on this machine as busy as it is: coefficients {:.2g} s "
-                   "(+- {:.1g}), solve {:.2g} s; {:.3g} blocks in {:.3g} MiB (+- {:.1g}){}\n",
-                   cost.rows, cost.of_rows, cost.coefficients_s.value, cost.coefficients_s.error,
-                   cost.solve_s.value, cost.blocks.value, cost.memory_mib.value, cost.memory_mib.error,
-                   cost.blocks_per_frame > 0.0
-                       ? fmt::format(", {:.3g} of them change in a frame", cost.blocks_per_frame)
-                       : "");
+        fmt::print(
+            "  predicted from {} of {} block rows, on this machine as busy as it is: coefficients {:.2g} s "
+            "(+- {:.1g}), solve {:.2g} s; {:.3g} blocks in {:.3g} MiB (+- {:.1g}){}\n",
+            cost.rows, cost.of_rows, cost.coefficients_s.value, cost.coefficients_s.error, cost.solve_s.value,
+            cost.blocks.value, cost.memory_mib.value, cost.memory_mib.error,
+            cost.blocks_per_frame > 0.0
+                ? fmt::format(", {:.3g} of them change in a frame", cost.blocks_per_frame)
+                : "");
     core::RunRecord& record = stage.record();
     record.set("predicted/rows_sampled", static_cast<std::uint64_t>(cost.rows));
     record.set("predicted/coefficients_seconds", cost.coefficients_s.value);
@@ -61,7 +62,8 @@ int main(int argc, char** argv) {
         stage.figure("predicted memory", plan.predicted_memory_mib, "MiB");
         if (prediction == "no") return core::ExitCode::Ok;
         if (tree.elements.size() > coefficients::GroupingOptions{}.most_elements) {
-            core::log_info(fmt::format("no prediction of time: {} elements exchange light in groups", tree.elements.size()));
+            core::log_info(fmt::format("no prediction of time: {} elements exchange light in groups",
+                                       tree.elements.size()));
             return core::ExitCode::Ok;
         }
         auto light = stage.step("read case", [&] { return stages::read_light_case(stage.folder()); });

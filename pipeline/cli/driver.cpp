@@ -121,7 +121,8 @@ int RunTable::run_until(const std::string& last) const {
             arguments.emplace_back("--if-stale");
         else if (stage.resumes)
             arguments.insert(arguments.end(), {"--resume", "no"});
-        if (stage.name == std::string_view("plan")) arguments.insert(arguments.end(), {"--prediction", "no"}); // runs anyway
+        if (stage.name == std::string_view("plan"))
+            arguments.insert(arguments.end(), {"--prediction", "no"}); // runs anyway
         const int code = call_program(fmt::format("kinelux-{}", stage.name), arguments);
         if (code != 0 && code != static_cast<int>(core::ExitCode::NotConverged)) return code;
         result = std::max(result, code);

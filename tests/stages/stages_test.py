@@ -242,6 +242,26 @@ class MovingScene(StageTest):
             # The room is closed.
             self.assertLess(abs(frame["lost_flux"]), 0.02 * frame["emitted_flux"])
 
+    def test_plan_predicts_blocks_and_memory_and_leaves_the_plan_as_it_is(self):
+        scene = scenes.write_room(self.folder, moving=True, target="5%")
+        self.run_ok("kinelux", "run", scene, "-o", "case", "--element-size", "0.2")
+        case = self.folder / "case"
+        before = (case / "plan.json").read_bytes()
+        done = self.run_ok("kinelux", "plan", "case")
+        self.assertRegex(done.stdout, r"predicted from \d+ of \d+ block rows")
+        self.assertEqual((case / "plan.json").read_bytes(), before)
+        predicted = json.loads((case / "plan-record.json").read_text(encoding="utf-8"))["predicted"]
+        counts = json.loads((case / "coefficients.json").read_text(encoding="utf-8"))["counts"]
+        self.assertLess(0.7, predicted["blocks"] / counts["blocks"])
+        self.assertLess(predicted["blocks"] / counts["blocks"], 1.4)
+        self.assertGreater(predicted["coefficients_seconds"], 0)
+        self.assertGreater(predicted["solve_seconds"], 0)
+        self.assertGreater(predicted["blocks_per_frame"], 0)
+        elements = json.loads((case / "cluster.json").read_text(encoding="utf-8"))["counts"]["elements"]
+        size = counts["blocks"] * (4 * (counts["unknowns"] / elements) ** 2 + 24) / 2**20
+        self.assertLess(0.7, predicted["memory_mib"] / size)
+        self.assertLess(predicted["memory_mib"] / size, 1.4)
+
     def test_shadows_of_the_publication_cost_what_exact_ones_do_not(self):
         scene = scenes.write_room(self.folder, moving=True, frames=4, target="3%")
         self.run_ok("kinelux", "run", scene, "-o", "case")
