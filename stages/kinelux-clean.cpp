@@ -20,6 +20,13 @@ int main(int argc, char** argv) {
                          .unit = "1",
                          .low = 0.0,
                          .high = 1e-3});
+    stage.options().add(
+        {.member = &options.stitch_tolerance,
+         .flags = "--stitch-tolerance",
+         .help = "cracks and T-junctions narrower than this times the object's size are closed",
+         .unit = "1",
+         .low = 0.0,
+         .high = 1e-2});
     return stage.run(argc, argv, [&](cli::Stage&) {
         stage.use_case(overrides.case_path(stage.argument()));
         model::Scene scene = stage.step("read", [&] {

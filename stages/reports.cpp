@@ -27,6 +27,8 @@ constexpr std::array counts{Count{"faces_in", &clean::CleanReport::faces_in},
                             Count{"duplicate_faces", &clean::CleanReport::duplicate_faces},
                             Count{"opposite_faces", &clean::CleanReport::opposite_faces},
                             Count{"degenerate_faces", &clean::CleanReport::degenerate_faces},
+                            Count{"joined_points", &clean::CleanReport::joined_points},
+                            Count{"divided_edges", &clean::CleanReport::divided_edges},
                             Count{"flipped_faces", &clean::CleanReport::flipped_faces},
                             Count{"non_manifold_edges", &clean::CleanReport::non_manifold_edges},
                             Count{"boundary_edges", &clean::CleanReport::boundary_edges},
@@ -39,6 +41,7 @@ void record(const clean::CleanReport& report, const std::string& key, core::RunR
     for (const Count& count : counts) record.set(key + "/" + count.name, report.*count.value);
     record.set(key + "/parts", static_cast<std::uint64_t>(report.parts));
     record.set(key + "/closed_parts", static_cast<std::uint64_t>(report.closed_parts));
+    record.set(key + "/stitched_within_m", report.stitched_within);
     record.set(key + "/gap_length_m", report.gap_length);
     record.set(key + "/area_in_m2", report.area_in);
     record.set(key + "/area_out_m2", report.area_out);

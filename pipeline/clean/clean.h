@@ -12,6 +12,8 @@ namespace kinelux::clean {
 struct CleanOptions {
     double merge_tolerance =
         1e-7; ///< points nearer than this times the object's size become one [1], 0..1e-3
+    double stitch_tolerance =
+        1e-5; ///< cracks and T-junctions narrower than this times the object's size are closed [1], 0..1e-2
 };
 
 /// What was done to one object; every count is faces or points of that object.
@@ -24,8 +26,10 @@ struct CleanReport {
     std::uint64_t opposite_faces =
         0; ///< pairs with the same corners and opposite direction, made one two-sided face
     std::uint64_t degenerate_faces =
-        0;                           ///< removed: no area; where one closed a gap its neighbour was divided
-    std::uint64_t flipped_faces = 0; ///< turned to agree with their neighbours or to face outwards
+        0; ///< removed: no area; where one closed a gap its neighbour was divided
+    std::uint64_t joined_points = 0, divided_edges = 0; ///< at borders, to close cracks and T-junctions
+    double stitched_within = 0.0;                       ///< what moved most for it [m]
+    std::uint64_t flipped_faces = 0;      ///< turned to agree with their neighbours or to face outwards
     std::uint64_t non_manifold_edges = 0; ///< kept, with their points doubled
     std::uint64_t boundary_edges = 0;     ///< after cleaning
     double gap_length = 0.0;              ///< of the edges along which its parts are open, slits aside [m]

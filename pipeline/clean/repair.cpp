@@ -13,6 +13,7 @@
 
 #include "clean/caps.h"
 #include "clean/merge_points.h"
+#include "clean/stitch.h"
 #include "clean/work_mesh.h"
 #include "core/error.h"
 
@@ -113,6 +114,32 @@ MergedPoints merge_gently(const model::Mesh& mesh, double size, const CleanOptio
     return merge_used(mesh, 0.0);
 }
 
+// Closes cracks and T-junctions, unless that would change the area by more than strips as wide as the tolerance can.
+Stitched stitch_gently(const std::vector<Vec3>& points, const std::vector<model::Triangle>& triangles,
+                       double size, const CleanOptions& options, CleanReport& report) {
+    constexpr double strips = 10.0;
+    const auto sum = [&](const std::vector<model::Triangle>& all) {
+        double result = 0.0;
+        for (const model::Triangle& t : all) result += area(points, t);
+        return result;
+    };
+    Stitched stitched = stitch_borders(points, triangles, options.stitch_tolerance * size);
+    const double before = sum(triangles);
+    if (std::abs(sum(stitched.triangles) - before) > strips * options.stitch_tolerance * before) {
+        report.notes.push_back("cracks were not stitched: that would have changed the area");
+        return stitch_borders(points, triangles, 0.0);
+    }
+    report.joined_points = stitched.joined_points;
+    report.divided_edges = stitched.divided_edges;
+    report.stitched_within = stitched.largest_move;
+    if (stitched.joined_points + stitched.divided_edges > 0)
+        report.notes.push_back(
+            fmt::format("cracks and T-junctions closed: {} border points joined, border edges divided {} "
+                        "times; nothing moved more than {:.3g} m",
+                        stitched.joined_points, stitched.divided_edges, stitched.largest_move));
+    return stitched;
+}
+
 // Corners in ascending order, and whether it took an odd number of exchanges to sort them.
 std::pair<std::array<std::uint32_t, 3>, bool> sorted_corners(const model::Triangle& t) {
     std::array<std::uint32_t, 3> corners{t[0], t[1], t[2]};
@@ -191,9 +218,10 @@ WorkMesh repair(const model::Object& object, const CleanOptions& options, CleanR
     }
     const DividedCaps divided = divide_at_caps(merged.points, triangles, flat_share * size);
     report.degenerate_faces = divided.dropped;
-    for (std::size_t i = 0; i < divided.triangles.size(); ++i) {
-        const model::Triangle& t = divided.triangles[i];
-        const std::size_t f = divided.source[i];
+    const Stitched stitched = stitch_gently(merged.points, divided.triangles, size, options, report);
+    for (std::size_t i = 0; i < stitched.triangles.size(); ++i) {
+        const model::Triangle& t = stitched.triangles[i];
+        const std::size_t f = divided.source[stitched.source[i]];
         switch (seen.take(t, in.materials[f], work)) {
         case SeenFaces::Verdict::Fresh: add_face(in, f, t, false, work); break;
         case SeenFaces::Verdict::OtherSide:
