@@ -59,7 +59,7 @@ std::string name_of(const TDF_Label& label) {
 
 class CadReader {
 public:
-    CadReader(const MeshFile& file, const Handle(TDocStd_Document)& document)
+    CadReader(const MeshFile& file, const Handle(TDocStd_Document) & document)
         : file_(file),
           shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
           colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
@@ -105,7 +105,8 @@ private:
         std::string own = name_of(label), of_part = name_of(part);
         if (own.starts_with("NAUO")) std::swap(own, of_part);
         for (const std::string& name : {of_part, own})
-            if (!name.empty() && (place.names.empty() || place.names.back() != name)) place.names.push_back(name);
+            if (!name.empty() && (place.names.empty() || place.names.back() != name))
+                place.names.push_back(name);
         TDF_LabelSequence components;
         if (XCAFDoc_ShapeTool::IsAssembly(part) && XCAFDoc_ShapeTool::GetComponents(part, components)) {
             for (const TDF_Label& component : components) visit(component, place, depth + 1);
@@ -136,8 +137,7 @@ private:
         std::snprintf(name.data(), name.size(), "colour %.3g %.3g %.3g", rgb.x, rgb.y, rgb.z);
         const auto known = materials_.find(name.data());
         if (known != materials_.end()) return known->second;
-        return materials_[name.data()] =
-                   collector_.add(name.data(), rgb, Vec3(0.0), model::Sides::Auto);
+        return materials_[name.data()] = collector_.add(name.data(), rgb, Vec3(0.0), model::Sides::Auto);
     }
 
     void add_object(const TopoDS_Shape& shape, const Place& place) {

@@ -46,7 +46,8 @@ bool is_obj(std::string_view bytes) {
 bool is_iges(std::string_view bytes) {
     constexpr std::size_t column = 72;
     const std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
-    return line.size() == 80 && line[column] == 'S' && line.substr(column + 1).find_first_not_of(" 0123456789") == std::string_view::npos;
+    return line.size() == 80 && line[column] == 'S' &&
+           line.substr(column + 1).find_first_not_of(" 0123456789") == std::string_view::npos;
 }
 
 // The format by the first bytes where they are unmistakable, else empty.

@@ -66,14 +66,16 @@ void rehearse(const std::string& what, const ImportLimits& limits, const std::fu
     if (child < 0) return; // the import alone has to do
     if (child == 0) run_child(limits, import);
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     const std::string advice = "; repair it, or export it in another format";
     if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
         throw core::FileError(
             fmt::format("{}: reading it takes longer than {:.0f} s{}", what, limits.cpu_s, advice));
     if (WIFSIGNALED(status))
-        throw core::FileError(fmt::format("{}: the library that reads this format crashes on it (signal {}){}",
-                                          what, WTERMSIG(status), advice));
+        throw core::FileError(
+            fmt::format("{}: the library that reads this format crashes on it (signal {}){}", what,
+                        WTERMSIG(status), advice));
     if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory)
         throw core::FileError(
             fmt::format("{}: reading it takes more than {:g} GiB{}", what, limits.memory_gib, advice));

@@ -9,8 +9,8 @@ namespace kinelux::io {
 
 /// What a foreign reader may take.
 struct ImportLimits {
-    double cpu_s = 60.0;         ///< [s]
-    double memory_gib = 4.0;     ///< of address space beyond what is in use [GiB]
+    double cpu_s = 60.0;     ///< [s]
+    double memory_gib = 4.0; ///< of address space beyond what is in use [GiB]
 };
 
 /// Runs an import in a child process first and drops what it makes: readers of other projects crash, hang or eat all memory

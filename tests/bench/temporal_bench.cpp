@@ -160,7 +160,9 @@ int main(int argc, char** argv) {
         std::vector<std::uint32_t> all;
         for (std::uint32_t f = 0; f < light.scene.time.frames; ++f) all.push_back(f);
         const auto engine = [&](const char* name) {
-            return [&, name] { return stages::make_engine({.name = name}, light, coefficients, areas, all, 1).engine; };
+            return [&, name] {
+                return stages::make_engine({.name = name}, light, coefficients, areas, all, 1).engine;
+            };
         };
         const solve::SolveOptions usual{.tolerance = solve::tolerance_for(light.scene.accuracy.target)};
         solve::SolveOptions cold = usual;

@@ -98,8 +98,7 @@ double volume(const model::Mesh& mesh) {
 std::size_t open_edges(const model::Mesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
     for (const model::Triangle& t : mesh.triangles)
-        for (std::size_t k = 0; k < 3; ++k)
-            ++count[std::minmax(t[k], t[(k + 1) % 3])];
+        for (std::size_t k = 0; k < 3; ++k) ++count[std::minmax(t[k], t[(k + 1) % 3])];
     return static_cast<std::size_t>(
         std::count_if(count.begin(), count.end(), [](const auto& edge) { return edge.second != 2; }));
 }
@@ -113,7 +112,8 @@ TEST(ReadCad, solids_have_their_area_and_volume_and_are_closed) {
         double area, volume; // [mm2], [mm3]
     };
     const TopoDS_Shape box = BRepPrimAPI_MakeBox(100.0, 200.0, 300.0);
-    const TopoDS_Shape drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(50, 100, -10), gp_Dir(0, 0, 1)), 20.0, 400.0);
+    const TopoDS_Shape drill =
+        BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(50, 100, -10), gp_Dir(0, 0, 1)), 20.0, 400.0);
     for (const Solid& solid :
          {Solid{"box", box, 220000.0, 6e6},
           Solid{"cylinder", BRepPrimAPI_MakeCylinder(50.0, 100.0), pi * 15000.0, pi * 250000.0},
@@ -203,8 +203,12 @@ TEST(ReadCad, broken_files_are_refused_with_a_reason) {
         }
     };
     for (const double part : {0.1, 0.3, 0.5, 0.7, 0.9})
-        EXPECT_NE(refused(bytes.substr(0, static_cast<std::size_t>(part * static_cast<double>(bytes.size()))), "cut.step"), "read") << part;
-    EXPECT_NE(refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n", "empty.step"), "read");
+        EXPECT_NE(refused(bytes.substr(0, static_cast<std::size_t>(part * static_cast<double>(bytes.size()))),
+                          "cut.step"),
+                  "read")
+            << part;
+    EXPECT_NE(refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n", "empty.step"),
+              "read");
     EXPECT_NE(refused(std::string("ISO-10303-21;") + std::string(5000, '\x01'), "noise.step"), "read");
     EXPECT_NE(refused(std::string(5000, '\x7f'), "noise.iges"), "read");
 }
@@ -220,7 +224,9 @@ TEST(Rehearse, turns_crashes_hangs_and_hunger_into_errors) {
     };
     EXPECT_EQ(message({}, [] {}), "");
     EXPECT_EQ(message({}, [] { throw core::FileError("later"); }), "");
-    EXPECT_TRUE(message({}, [] { std::abort(); }).starts_with("file.xyz: the library that reads this format crashes"));
+    EXPECT_TRUE(message({}, [] {
+                    std::abort();
+                }).starts_with("file.xyz: the library that reads this format crashes"));
     EXPECT_TRUE(message({.cpu_s = 1.0}, [] {
                     std::atomic<int> spins = 0;
                     for (;;) ++spins;
