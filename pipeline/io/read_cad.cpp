@@ -143,7 +143,8 @@ private:
     void add_object(const TopoDS_Shape& shape, const Place& place) {
         if (shape.IsNull()) return;
         // Facets of faces that share an edge share its points.
-        BRepMesh_IncrementalMesh(shape, deflection_mm_, false, facet_angle_rad, false);
+        const BRepMesh_IncrementalMesh facets(shape, deflection_mm_, false, facet_angle_rad, false);
+        static_cast<void>(facets); // they are in the shape now
         model::Object object;
         std::map<std::array<double, 3>, std::uint32_t> known;
         for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next())

@@ -38,7 +38,8 @@ Surface flat_grid(std::uint32_t n) {
 
 // A small upright triangle of its own through the middle of a cell's first triangle.
 void add_spike(Surface& grid, std::uint32_t n, std::uint32_t cell) {
-    const double x = cell % n + 0.7, y = cell / n + 0.3;
+    const std::uint32_t row = cell / n;
+    const double x = cell % n + 0.7, y = row + 0.3;
     const auto first = static_cast<std::uint32_t>(grid.points.size());
     grid.points.emplace_back(x - 0.05, y, -0.1);
     grid.points.emplace_back(x + 0.05, y, -0.1);
