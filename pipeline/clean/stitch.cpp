@@ -154,9 +154,10 @@ struct OnEdge {
     std::uint32_t point;
 };
 
-// Border points beside the inside of an edge, in order along it.
+// Border points beside the inside of an edge of a triangle, in order along it.
 std::vector<OnEdge> points_beside(std::span<const Vec3> points, std::uint32_t from, std::uint32_t to,
-                                  const PointGrid& grid, double tolerance, double& largest_move) {
+                                  std::uint32_t apex, const PointGrid& grid, double tolerance,
+                                  double& largest_move) {
     std::vector<OnEdge> found;
     const Vec3 a = points[from], d = points[to] - a;
     const double length = glm::length(d);
@@ -166,7 +167,7 @@ std::vector<OnEdge> points_beside(std::span<const Vec3> points, std::uint32_t fr
         const Vec3 x = a + static_cast<double>(p) / static_cast<double>(pieces) * d;
         const Vec3 y = a + static_cast<double>(p + 1) / static_cast<double>(pieces) * d;
         grid.around(glm::min(x, y), glm::max(x, y), [&](std::uint32_t n) {
-            if (n == from || n == to) return;
+            if (n == from || n == to || n == apex) return;
             const double along = glm::dot(points[n] - a, d) / (length * length);
             if (along * length <= tolerance || (1.0 - along) * length <= tolerance) return;
             const double off = glm::distance(points[n], a + along * d);
@@ -194,8 +195,8 @@ bool divide_edges(std::span<const Vec3> points, double tolerance, Stitched& work
         const model::Triangle t = work.triangles[border.triangle];
         const std::uint32_t from = t[border.side], to = t[(border.side + 1) % 3],
                             apex = t[(border.side + 2) % 3];
-        std::vector<OnEdge> beside = points_beside(points, from, to, grid, tolerance, work.largest_move);
-        std::erase_if(beside, [&](const OnEdge& o) { return o.point == apex; });
+        const std::vector<OnEdge> beside =
+            points_beside(points, from, to, apex, grid, tolerance, work.largest_move);
         if (beside.empty()) continue;
         divided[border.triangle] = 1;
         work.divided_edges += beside.size();
