@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <new>
 #include <optional>
 #include <set>
 
@@ -17,6 +18,7 @@
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <TDF_ChildIterator.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
@@ -232,6 +234,8 @@ ImportedMeshes read_cad(const MeshFile& file, CadFormat format) {
         }
         STEPCAFControl_Reader reader;
         return CadReader(file, transferred(file, reader)).read();
+    } catch (const Standard_OutOfMemory&) {
+        throw std::bad_alloc();
     } catch (const Standard_Failure& failure) {
         throw core::FileError(file.name() + ": cannot be read as a CAD model: " + failure.GetMessageString());
     }

@@ -11,6 +11,8 @@
 #include <set>
 #include <string>
 
+#include <unistd.h>
+
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -231,6 +233,7 @@ TEST(Rehearse, turns_crashes_hangs_and_hunger_into_errors) {
                     std::atomic<int> spins = 0;
                     for (;;) ++spins;
                 }).starts_with("file.xyz: reading it takes longer than 1 s"));
+    EXPECT_TRUE(message({.cpu_s = 0.25}, [] { pause(); }).starts_with("file.xyz: reading it takes longer"));
 #if !defined(__SANITIZE_ADDRESS__)
     EXPECT_TRUE(message({.memory_gib = 0.5}, [] {
                     std::vector<std::string> all;
