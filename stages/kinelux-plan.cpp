@@ -16,9 +16,9 @@ void report_cost(const stages::Cost& cost, cli::Stage& stage) {
     if (!stage.quiet())
         fmt::print(
             "  predicted from {} of {} block rows, on this machine as busy as it is: coefficients {:.2g} s "
-            "(+- {:.1g}), solve {:.2g} s; {:.3g} blocks in {:.3g} MiB (+- {:.1g}){}\n",
+            "(+- {:.1g}), solve {:.2g} s (+- {:.1g}); {:.3g} blocks in {:.3g} MiB (+- {:.1g}){}\n",
             cost.rows, cost.of_rows, cost.coefficients_s.value, cost.coefficients_s.error, cost.solve_s.value,
-            cost.blocks.value, cost.memory_mib.value, cost.memory_mib.error,
+            cost.solve_s.error, cost.blocks.value, cost.memory_mib.value, cost.memory_mib.error,
             cost.blocks_per_frame > 0.0
                 ? fmt::format(", {:.3g} of them change in a frame", cost.blocks_per_frame)
                 : "");

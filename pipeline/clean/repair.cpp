@@ -129,6 +129,7 @@ Stitched stitch_gently(const std::vector<Vec3>& points, const std::vector<model:
         report.notes.push_back("cracks were not stitched: that would have changed the area");
         return stitch_borders(points, triangles, 0.0);
     }
+    report.degenerate_faces += stitched.dropped;
     report.joined_points = stitched.joined_points;
     report.divided_edges = stitched.divided_edges;
     report.stitched_within = stitched.largest_move;

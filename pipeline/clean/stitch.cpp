@@ -143,7 +143,10 @@ void join_points(std::span<const Vec3> points, double tolerance, Stitched& work)
         model::Triangle triangle = kept.triangles[t];
         for (std::uint32_t& corner : triangle)
             if (const auto found = becomes.find(corner); found != becomes.end()) corner = found->second;
-        if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+        if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
+            ++work.dropped;
+            continue;
+        }
         work.triangles.push_back(triangle);
         work.source.push_back(kept.source[t]);
     }

@@ -26,8 +26,9 @@ struct StageCall {
     const char* name;
     const char* record;
     const char* summary;
-    std::vector<const char*> options; ///< of `kinelux run` that this stage knows
-    bool resumes = false;             ///< knows --resume
+    std::vector<const char*> options;     ///< of `kinelux run` that this stage knows
+    bool resumes = false;                 ///< knows --resume
+    std::vector<const char*> always = {}; ///< what a run gives it besides
 };
 
 const std::array<StageCall, 7>& stage_calls() {
@@ -38,7 +39,12 @@ const std::array<StageCall, 7>& stage_calls() {
          {"accuracy", "degree", "element-size", "allow-outside"}},
         {"fit", "fit.json", "fits patches to the meshes", {}},
         {"cluster", "cluster.json", "cuts patches into elements, gathers small triangles into clusters", {}},
-        {"plan", "plan-record.json", "decides which effects the scene calls for", {}},
+        {"plan",
+         "plan-record.json",
+         "decides which effects the scene calls for",
+         {},
+         false,
+         {"--prediction", "no"}},
         {"coefficients", "coefficients.json", "computes the transport blocks", {"seed", "memory-limit"}},
         {"solve", "solve.json", "solves for the light of every frame", {"seed", "frames", "engine"}, true},
         {"export", "export.json", "writes fields, meters and the ParaView script", {"seed", "frames"}},
@@ -121,8 +127,7 @@ int RunTable::run_until(const std::string& last) const {
             arguments.emplace_back("--if-stale");
         else if (stage.resumes)
             arguments.insert(arguments.end(), {"--resume", "no"});
-        if (stage.name == std::string_view("plan"))
-            arguments.insert(arguments.end(), {"--prediction", "no"}); // runs anyway
+        arguments.insert(arguments.end(), stage.always.begin(), stage.always.end());
         const int code = call_program(fmt::format("kinelux-{}", stage.name), arguments);
         if (code != 0 && code != static_cast<int>(core::ExitCode::NotConverged)) return code;
         result = std::max(result, code);
@@ -193,10 +198,12 @@ int drive(const std::vector<std::string>& arguments, std::span<const Command> co
         known.emplace_back(stage.name);
         table.row({stage.name, fmt::format("kinelux-{}: {}", stage.name, stage.summary)});
     }
-    known.emplace_back("reference");
-    table.row({"reference", "kinelux-reference: measures the exported irradiance against path tracing"});
-    known.emplace_back("study");
-    table.row({"study", "kinelux-study: what accuracy costs on a scene, with measured errors"});
+    for (const auto& [name, summary] :
+         {std::pair("reference", "measures the exported irradiance against path tracing"),
+          std::pair("study", "what accuracy costs on a scene, with measured errors")}) {
+        known.emplace_back(name);
+        table.row({name, fmt::format("kinelux-{}: {}", name, summary)});
+    }
 
     if (arguments.empty()) throw core::OptionError("a command is missing; see kinelux --help");
     const std::string& word = arguments.front();

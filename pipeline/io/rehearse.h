@@ -14,7 +14,8 @@ struct ImportLimits {
 };
 
 /// Runs an import in a child process first and drops what it makes: readers of other projects crash, hang or eat all memory
-/// on broken files, and none of that may reach this process. What the import throws is not its concern: the import
+/// on broken files, and none of that may reach this process. The work is done twice: results of any size need no second form to
+/// come back in. What the import throws is not its concern: the import
 /// that follows throws it again.
 /// @param what  for messages, the file's name
 /// @throws FileError  it crashed, took longer or more memory than allowed

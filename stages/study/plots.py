@@ -36,6 +36,11 @@ def draw(study, folder):
     return pictures
 
 
+def name_of(row):
+    """Its accuracy, and what else was asked for."""
+    return f"{100 * row['accuracy']:g} %" + "".join(f" {row[key]}" for key in ("engine", "degree") if row[key] != "auto")
+
+
 def groups(study):
     """Rows of one engine and degree each, with a name."""
     found = {}
@@ -72,8 +77,7 @@ def error_against_time(pyplot, study):
 def time_per_stage(pyplot, study):
     rows = study["rows"]
     figure, axes = pyplot.subplots(figsize=(7, 0.8 + 0.42 * len(rows)), layout="constrained")
-    names = [f"{100 * row['accuracy']:g} %" + "".join(f" {row[k]}" for k in ("engine", "degree") if row[k] != "auto")
-             for row in rows]
+    names = [name_of(row) for row in rows]
     left = [0.0] * len(rows)
     for stage, colour in STAGE_COLOURS.items():
         share = [100 * row["stages"].get(stage, {}).get("seconds", 0.0) / row["seconds"] for row in rows]
@@ -90,11 +94,10 @@ def error_against_frame(pyplot, study):
     figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
     for row in study["rows"]:
         frames = row["frame_errors"]
-        name = f"{100 * row['accuracy']:g} %" + "".join(f" {row[k]}" for k in ("engine", "degree") if row[k] != "auto")
         line, = axes.semilogy([f["frame"] for f in frames], [100 * f["estimated"] for f in frames], ":", linewidth=1)
         judged = [f for f in frames if f["measured"] is not None]
         axes.semilogy([f["frame"] for f in judged], [100 * f["measured"] for f in judged], "o-", color=line.get_color(),
-                      label=name)
+                      label=name_of(row))
     axes.set_xlabel("frame")
     axes.set_ylabel("error [%]: dots measured, dotted line estimated")
     axes.grid(True, which="both", alpha=0.25)

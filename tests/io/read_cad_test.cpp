@@ -60,6 +60,9 @@ public:
     void put(const TDF_Label& assembly, const TDF_Label& part, const gp_Vec& by, const char* name) {
         gp_Trsf move;
         move.SetTranslation(by);
+        put(assembly, part, move, name);
+    }
+    void put(const TDF_Label& assembly, const TDF_Label& part, const gp_Trsf& move, const char* name) {
         TDataStd_Name::Set(shapes_->AddComponent(assembly, part, TopLoc_Location(move)), name);
     }
     void colour(const TDF_Label& label, double red, double green, double blue) {
@@ -175,6 +178,30 @@ TEST(ReadCad, instances_have_names_places_and_colours) {
             coloured += std::abs(rho[0] - 0.5) < 1e-3 && std::abs(rho[2] - 0.125) < 1e-3 ? 1 : 0;
         }
     EXPECT_EQ(coloured, 24u); // two boxes of 12
+}
+
+TEST(ReadCad, assemblies_in_assemblies_are_turned_and_moved_with_them) {
+    const support::TemporaryFolder folder;
+    Drawing drawing;
+    const TDF_Label rod = drawing.add(BRepPrimAPI_MakeBox(100.0, 2.0, 1.0), "rod");
+    const TDF_Label inner = drawing.assembly("inner"), outer = drawing.assembly("outer");
+    gp_Trsf quarter; // takes x to y
+    quarter.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), std::numbers::pi / 2.0);
+    drawing.put(inner, rod, gp_Vec(10, 0, 0), "NAUO7"); // a name that exporters make up
+    drawing.put(outer, inner, quarter, "arm");
+    const ImportedMeshes found = read_mesh(drawing.write_step(folder.path() / "arm.step"), 3);
+    ASSERT_EQ(found.objects.size(), 1u);
+    EXPECT_EQ(found.objects[0].name, "rod");
+    Vec3 low(1e9), high(-1e9);
+    for (const Vec3& point : found.objects[0].mesh.points) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    EXPECT_LT(glm::distance(low, Vec3(-2, 10, 0)), 1e-9);
+    EXPECT_LT(glm::distance(high, Vec3(0, 110, 1)), 1e-9);
+    EXPECT_NEAR(volume(found.objects[0].mesh), 200.0, 1e-9);
+    for (const char* name : {"outer", "inner", "arm", "rod"})
+        EXPECT_TRUE(std::ranges::count(found.groups[0], name) > 0) << name;
 }
 
 TEST(ReadCad, inches_become_metres) {

@@ -118,6 +118,37 @@ TEST(Transport, a_wall_between_hides) {
     EXPECT_NEAR(half.values.at(0) / open.values.at(0), 0.5, 0.13);
 }
 
+TEST(Transport, errors_behind_a_wall_are_relative_to_the_block_down_to_the_floor) {
+    // Small squares far apart, so that their block is a small part of the largest possible one; close to each of them a
+    // wall hides some, so that either side has a shadow that begins with a step.
+    model::PatchSet set;
+    set.patches = {rectangle(Vec3(0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0)),
+                   rectangle(Vec3(0, 0, 1), Vec3(0, 0.1, 0), Vec3(0.1, 0, 0)),
+                   rectangle(Vec3(-2, -2, 0.002), Vec3(2.14, 0.1, 0), Vec3(-0.2, 4.28, 0)),
+                   rectangle(Vec3(-2, -2, 0.998), Vec3(0.1, 2.13, 0), Vec3(4.26, -0.2, 0))};
+    const auto shapes = support::shapes_of(set, 1, 2);
+    const auto occluders = support::occluders_of(set, support::plain_scene(1));
+    constexpr double sight_tolerance = 1e-2;
+    const auto block_with = [&](double floor, double tolerance) {
+        return transport(shapes[0], shapes[1], occluders,
+                         {.tolerance = 1e-4, .sight_tolerance = tolerance, .sight_floor = floor});
+    };
+    const auto exact = block_with(1e-4, 1e-4);
+    ASSERT_GT(exact.values.at(0), 1e-4);
+    for (const double floor : {1e-4, 1e-3}) {
+        const TransportBlock block = block_with(floor, sight_tolerance);
+        double norm = 0.0, off = 0.0;
+        for (std::size_t k = 0; k < block.values.size(); ++k) {
+            norm += block.values[k] * block.values[k];
+            off += (block.values[k] - exact.values[k]) * (block.values[k] - exact.values[k]);
+        }
+        const double allowed = sight_tolerance * std::max(std::sqrt(norm), floor);
+        EXPECT_LE(block.error, allowed);
+        EXPECT_LE(std::sqrt(off), allowed);
+    }
+    EXPECT_GT(block_with(0.1, sight_tolerance).error, block_with(1e-4, sight_tolerance).error);
+}
+
 TEST(PolygonIrradiance, meets_the_parallel_rectangle_formula) {
     // Howell B-3: a corner-aligned parallel rectangle a x b at distance c.
     const double a = 1.3, b = 0.6, c = 0.8, x = a / c, y = b / c;

@@ -57,14 +57,18 @@ TEST(ChangingPairs, at_rest_that_a_mover_crosses_equal_a_scene_built_anew) {
     expect_as_built_anew(std::move(room));
 }
 
+ChangingPairs changing_of(PreparedRoom& prepared) {
+    return {prepared.coefficients, prepared.shapes, prepared.room.plan, prepared.occluders,
+            prepared.room.options};
+}
+
 TEST(ChangingPairs, that_a_thin_mover_crosses_are_not_missed) {
     MovingRoom room(3);
     const ObjectId rod = room.body("rod");
     room.panel(rod, Vec3(0.9, 0.013, 1.0), Vec3(0.01, 0, 0), Vec3(0, 1.97, 0));
     room.slide(rod, Vec3(0.037, 0.0, 0.0));
     PreparedRoom prepared(std::move(room));
-    ChangingPairs changing(prepared.coefficients, prepared.shapes, prepared.room.plan, prepared.occluders,
-                           prepared.room.options);
+    ChangingPairs changing = changing_of(prepared);
     changing.set_poses(prepared.poses(1));
     std::size_t shaded = 0;
     for (std::size_t k = 0; k < changing.pairs().size(); ++k)
@@ -74,8 +78,7 @@ TEST(ChangingPairs, that_a_thin_mover_crosses_are_not_missed) {
 
 TEST(ChangingPairs, glimpses_follow_the_constants_of_their_blocks) {
     PreparedRoom prepared(support::sliding_panel(5));
-    ChangingPairs changing(prepared.coefficients, prepared.shapes, prepared.room.plan, prepared.occluders,
-                           prepared.room.options);
+    ChangingPairs changing = changing_of(prepared);
     std::vector<double> before(changing.pairs().size(), 0.0), glimpsed = before;
     double off = 0.0, size = 0.0;
     for (std::uint32_t frame = 0; frame < 5; ++frame) {
@@ -103,8 +106,7 @@ TEST(ChangingPairs, that_move_further_than_they_are_apart_are_near) {
     room.panel(panel, Vec3(0.1, 0.6, 0.01), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0));
     room.slide(panel, Vec3(1.0, 0.0, 0.0));
     PreparedRoom prepared(std::move(room));
-    ChangingPairs changing(prepared.coefficients, prepared.shapes, prepared.room.plan, prepared.occluders,
-                           prepared.room.options);
+    ChangingPairs changing = changing_of(prepared);
     changing.set_poses(prepared.poses(1));
     const auto near = [&](double step_m) {
         std::size_t count = 0;
