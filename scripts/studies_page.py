@@ -53,12 +53,7 @@ def main():
         text.append("")
         for line in page.notes(study)[2:]:
             text += [line, ""]
-    text += ["## What stands out", "",
-             "The billiard table misses 3 %, and refining helps little below 10 %: why is not known. In its first frame, not the worst, most of",
-             "the error lies at a few sensors near the balls, where displayed cells are wider than the edge of a shadow. The cathedral and the borrowed models have clusters of",
-             "small triangles, whose basis is a constant; only their coarsest row fitted the time, so how fast their errors fall was not measured.", "",
-             "The estimate of the basis has a constant that was chosen with these scenes in view: the ratios above are no independent test.", "",
-             "Columns: *estimated* and *measured* errors are relative RMS of radiosity and irradiance in the worst judged frame;",
+    text += ["Columns: *estimated* and *measured* errors are relative RMS of radiosity and irradiance in the worst judged frame;",
              "*noise* is that of the path tracing, taken out of *measured*; *to next finer* is the difference from the row below;",
              "*kept*: the measured error is within what was asked for, but for the noise.", ""]
     (docs / "accuracy-and-cost.md").write_text("\n".join(text), encoding="utf-8")
