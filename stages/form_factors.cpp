@@ -41,7 +41,7 @@ Surfaces read_surfaces(const io::CaseFolder& folder, std::uint32_t frame) {
     const model::ClusterTree tree = folder.read_clusters();
     model::ClusterTree whole = coefficients::whole_patch_elements(patches, tree);
     auto elements = geometry::element_shapes(patches, whole, 0, 0);
-    visibility::Occluders occluders(visibility::bodies_of(patches, tree, scene));
+    visibility::Occluders occluders(visibility::bodies_of(patches, scene));
     const auto poses = geometry::object_poses(scene, scene.time.time_of_frame(frame));
     occluders.set_poses(poses);
     for (geometry::ElementShape& element : elements)

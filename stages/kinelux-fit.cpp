@@ -20,12 +20,20 @@ void add_options(cli::OptionTable& table, fit::FitOptions& options) {
                .unit = "deg",
                .low = 0.0,
                .high = 45.0});
-    table.add({.member = &options.min_patch_area,
-               .flags = "--min-patch-area",
-               .help = "of the scene's area: smaller facets of curved surfaces stay triangles",
-               .unit = "1",
-               .low = 0.0,
-               .high = 1.0});
+    table.add(
+        {.member = &options.min_patch_area,
+         .flags = "--min-patch-area",
+         .help = "of the scene's area: smaller round patches, and facets of curved surfaces, stay triangles",
+         .unit = "1",
+         .low = 0.0,
+         .high = 1.0});
+    table.add(
+        {.member = &options.round_face_turn_deg,
+         .flags = "--round-face-turn",
+         .help = "faces of a round patch turn this far from one to the next at most; 0: no round patches",
+         .unit = "deg",
+         .low = 0.0,
+         .high = 30.0});
     table.add({.member = &options.contact_tolerance,
                .flags = "--contact-tolerance",
                .help = "of the scene's size: what is this near to a patch touches it",

@@ -76,6 +76,7 @@ void report_cleaning(const clean::CleanResult& cleaned, cli::Stage& stage) {
 
 void report_fit(const fit::FitResult& fitted, cli::Stage& stage) {
     stage.count("patches", fitted.patches.patches.size());
+    stage.count("round patches", fitted.round_patches);
     stage.count("small triangles", fitted.patches.small.triangles.size());
     stage.count("faces in patches", fitted.faces_in_patches);
     stage.count("faces left small", fitted.faces_left_small);
@@ -83,6 +84,7 @@ void report_fit(const fit::FitResult& fitted, cli::Stage& stage) {
     stage.count("covered patches", fitted.covered_patches);
     stage.count("overlapping charts", fitted.overlapping);
     stage.figure("deviation", fitted.deviation_max, "m");
+    stage.figure("chords of round faces", fitted.chord_max, "m");
     stage.figure("area of faces", fitted.area_in, "m2");
     stage.figure("area of patches", fitted.area_out, "m2");
     stage.figure("covered area", fitted.covered_area, "m2");

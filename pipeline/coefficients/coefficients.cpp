@@ -317,6 +317,10 @@ kernel::TransportOptions transport_options_for(const model::Scene& scene, const 
     constexpr double most_scattered = 40.0; // a row that matters may go to a few elements only
     const double scattered = std::min(std::sqrt(static_cast<double>(elements.size())), most_scattered);
     options.sight_tolerance = std::min(scattered * options.tolerance, 0.1);
+    // Blocks of curved elements cost a hundred times as much as others, and what they may be off adds up like that as well.
+    // A row has only one of an element with itself.
+    options.curved_floor = 1.0 / scattered;
+    options.own_floor = 1.0;
     // One that is smaller than the mean of a row may be off by as much as the mean.
     options.sight_floor =
         std::clamp(1.0 / static_cast<double>(std::max<std::size_t>(elements.size(), 1)), 1e-5, 0.1);

@@ -187,7 +187,8 @@ void Linker::cast_rays(const TreeNode& a, const TreeNode& b, Samples& samples) c
     const std::size_t columns = b.rule.nodes.size();
     for (std::size_t k = 0; k < samples.kernel.size(); ++k)
         if (samples.kernel[k] > 0.0)
-            segments.push_back({a.rule.nodes[k / columns].position, b.rule.nodes[k % columns].position});
+            segments.push_back(
+                {a.rule.nodes[k / columns].sight_point(), b.rule.nodes[k % columns].sight_point()});
     blocked.assign(segments.size(), 0);
     occluders_.occluded(segments, blocked, visibility::Among::Resting);
     samples.rays = static_cast<std::uint32_t>(segments.size());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -18,7 +19,10 @@
 #include "fit/domain.h"
 #include "fit/faces.h"
 #include "fit/outline.h"
+#include "fit/round_charts.h"
 #include "fit/small_triangles.h"
+#include "fit/unroll.h"
+#include "geometry/surface.h"
 
 namespace kinelux::fit {
 
@@ -125,19 +129,48 @@ void add_patches(ChartPatches made, FitResult& result) {
     }
 }
 
+// What becomes of the facets of one body's curved surfaces.
+struct RoundPatches {
+    std::vector<model::Patch> patches;
+    std::vector<std::uint8_t> taken; // one per face of the body
+    double chord_max = 0.0;
+};
+
+RoundPatches round_patches(const SceneCharts& scene, const Body& body, std::size_t index, const Size& size,
+                           const FitOptions& options) {
+    RoundPatches result;
+    result.taken.resize(body.faces.size(), 0);
+    if (!(options.round_face_turn_deg > 0.0)) return result;
+    std::vector<std::uint8_t> facets(body.faces.size(), 0);
+    for (std::size_t c = 0; c < scene.charts.size(); ++c) {
+        if (scene.charts[c].body != index || scene.places[c].patch) continue;
+        for (const std::uint32_t f : scene.charts[c].faces) facets[f] = 1;
+    }
+    const RoundOptions round{.distance_tolerance = options.distance_tolerance * size.diagonal,
+                             .face_turn_deg = options.round_face_turn_deg,
+                             .least_area = options.min_patch_area * size.area};
+    for (const RoundChart& chart : grow_round_charts(body, index, facets, round)) {
+        std::vector<model::Patch> patches = patches_of_round_chart(body, chart);
+        if (patches.empty()) continue;
+        for (const std::uint32_t f : chart.faces) result.taken[f] = 1;
+        result.chord_max = std::max(result.chord_max, chart.chord_max);
+        std::move(patches.begin(), patches.end(), std::back_inserter(result.patches));
+    }
+    return result;
+}
+
+void add_round_patches(RoundPatches made, FitResult& result) {
+    result.round_patches += made.patches.size();
+    result.chord_max = std::max(result.chord_max, made.chord_max);
+    for (model::Patch& patch : made.patches) {
+        result.deviation_max = std::max(result.deviation_max, patch.deviation_max);
+        result.patches.patches.push_back(std::move(patch));
+    }
+}
+
 double area_of(const model::PatchSet& set) {
-    double area = 0.0;
-    for (const model::Patch& patch : set.patches) {
-        for (const model::Triangle& t : patch.triangles) {
-            const Vec2 ab = patch.points[t[1]] - patch.points[t[0]],
-                       ac = patch.points[t[2]] - patch.points[t[0]];
-            area += 0.5 * (ab.x * ac.y - ab.y * ac.x);
-        }
-    }
-    for (const model::Triangle& t : set.small.triangles) {
-        const Vec3 a = set.small.points[t[0]];
-        area += 0.5 * glm::length(glm::cross(set.small.points[t[1]] - a, set.small.points[t[2]] - a));
-    }
+    double area = geometry::area(set.small);
+    for (const model::Patch& patch : set.patches) area += geometry::area(patch);
     return area;
 }
 
@@ -158,6 +191,10 @@ FitResult fit_patches(const model::Scene& clean_scene, const FitOptions& options
                                    options.contact_tolerance * size.diagonal);
     });
 
+    std::vector<RoundPatches> round(bodies.size());
+    core::parallel_for(bodies.size(),
+                       [&](std::size_t b) { round[b] = round_patches(scene, bodies[b], b, size, options); });
+
     FitResult result;
     for (std::size_t c = 0; c < scene.charts.size(); ++c) {
         const Chart& chart = scene.charts[c];
@@ -166,11 +203,15 @@ FitResult fit_patches(const model::Scene& clean_scene, const FitOptions& options
             result.faces_in_patches += chart.faces.size();
             add_patches(std::move(made[c]), result);
         } else {
-            result.faces_left_small += chart.faces.size();
-            add_small_triangles(bodies[chart.body], chart, options.small_triangle_edge * size.diagonal,
+            Chart left = chart;
+            std::erase_if(left.faces, [&](std::uint32_t f) { return round[chart.body].taken[f] != 0; });
+            result.faces_in_patches += chart.faces.size() - left.faces.size();
+            result.faces_left_small += left.faces.size();
+            add_small_triangles(bodies[chart.body], left, options.small_triangle_edge * size.diagonal,
                                 result.patches.small);
         }
     }
+    for (RoundPatches& of_body : round) add_round_patches(std::move(of_body), result);
     result.area_out = area_of(result.patches);
     return result;
 }

@@ -115,7 +115,9 @@ ElementNode node_in(const ElementShape& shape, const Cell& cell, const Reference
         return {{x + at.s * x_1 + at.t * x_2, cell.normal, share * area}, parameter};
     }
     const SurfaceJet jet = evaluate(*shape.surface, parameter);
-    return {{jet.position, jet.normal, share * jet.area_factor * std::abs(cross(p_1, p_2))}, parameter};
+    return {
+        {jet.position, jet.normal, share * jet.area_factor * std::abs(cross(p_1, p_2)), shape.chord_height},
+        parameter};
 }
 
 std::vector<ElementNode> nodes_in(const ElementShape& shape, std::span<const Cell> cells, int degree) {

@@ -13,6 +13,7 @@
 #include "geometry/element_quadrature.h"
 #include "geometry/facet_loops.h"
 #include "geometry/surface.h"
+#include "geometry/tessellation.h"
 
 namespace kinelux::geometry {
 
@@ -33,15 +34,7 @@ std::vector<Facet> patch_facets(const model::Patch& patch, const model::ClusterT
                                 const model::Element& element) {
     std::vector<Facet> facets;
     for (std::uint32_t t = 0; t < element.triangle_count; ++t) {
-        const model::DomainTriangle& uv = tree.domain_triangles[element.first_triangle + t];
-        std::array<Vec3, 3> corners;
-        for (std::size_t c = 0; c < 3; ++c) corners[c] = position(patch.surface, uv[c]);
-        Facet facet = make_facet(corners, uv);
-        if (patch.surface.orientation < 0.0) {
-            std::swap(facet.corners[1], facet.corners[2]);
-            std::swap(facet.parameters[1], facet.parameters[2]);
-            facet.normal = -facet.normal;
-        }
+        const Facet facet = facet_of(patch.surface, tree.domain_triangles[element.first_triangle + t]);
         if (facet.area > 0.0 || is_curved(patch.surface)) facets.push_back(facet);
     }
     return facets;
@@ -214,8 +207,21 @@ void set_quadrature(ElementShape& shape, int degree) {
 
 } // namespace
 
+Facet facet_of(const model::Surface& surface, const model::DomainTriangle& piece) {
+    const auto& [a, b, c] = piece;
+    Facet facet = make_facet({position(surface, a), position(surface, b), position(surface, c)}, piece);
+    if (surface.orientation < 0.0) {
+        std::swap(facet.corners[1], facet.corners[2]);
+        std::swap(facet.parameters[1], facet.parameters[2]);
+        facet.normal = -facet.normal;
+    }
+    return facet;
+}
+
 std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const model::ClusterTree& tree,
                                          int degree, int cluster_degree) {
+    std::vector<double> chord_heights;
+    for (const model::Patch& patch : patches.patches) chord_heights.push_back(chord_height(patch));
     std::vector<ElementShape> shapes(tree.elements.size());
     core::parallel_for(shapes.size(), [&](std::size_t e) {
         const model::Element& element = tree.elements[e];
@@ -229,8 +235,10 @@ std::vector<ElementShape> element_shapes(const model::PatchSet& patches, const m
         if (shape.facets.empty())
             throw core::GeometryError("element " + std::to_string(e) +
                                       " has no area; run kinelux-clean first");
-        if (element.patch && is_curved(patches.patches[element.patch->value].surface))
+        if (element.patch && is_curved(patches.patches[element.patch->value].surface)) {
             shape.surface = patches.patches[element.patch->value].surface;
+            shape.chord_height = chord_heights[element.patch->value];
+        }
         set_bounds(shape);
         set_normals(shape);
         if (shape.planar) shape.outline = outline_of(shape.facets);
@@ -270,7 +278,8 @@ SurfaceNode node_at(const ElementShape& element, const Facet& facet, const std::
     }
     const SurfaceJet jet = evaluate(*element.surface, parameter);
     const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0];
-    return {jet.position, jet.normal, 0.5 * jet.area_factor * std::abs(e1.x * e2.y - e1.y * e2.x)};
+    return {jet.position, jet.normal, 0.5 * jet.area_factor * std::abs(e1.x * e2.y - e1.y * e2.x),
+            element.chord_height};
 }
 
 Vec2 facet_parameter(const Facet& facet, const Vec3& point) {

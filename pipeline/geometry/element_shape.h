@@ -30,6 +30,11 @@ struct SurfaceNode {
     Vec3 position; ///< [m]
     Vec3 normal;   ///< unit
     double weight; ///< [m2]
+    double lift =
+        0.0; ///< sight begins this far above it: over the chords that occlude for a hollow surface [m]
+
+    /// Where rays from here start and rays to here end.
+    Vec3 sight_point() const { return position + lift * normal; }
 };
 
 /// A quadrature of an element together with its basis there.
@@ -55,6 +60,7 @@ struct ElementShape {
     /// the element is not planar [m]
     std::vector<std::vector<Vec3>> outline;
     std::optional<model::Surface> surface; ///< of a curved patch, in the position of the element
+    double chord_height = 0.0;             ///< how far the patch's tessellation stands before its front [m]
     Basis basis;
     double area = 0.0;                ///< [m2]; of the true surface
     Vec3 centre{0.0};                 ///< of the bounding sphere
@@ -66,6 +72,9 @@ struct ElementShape {
     /// the nodes lie on the true surface.
     std::array<NodeSet, rule_levels> rules;
 };
+
+/// The flat triangle between the points of a surface at the corners of a piece of its domain.
+Facet facet_of(const model::Surface& surface, const model::DomainTriangle& piece);
 
 /// All elements at rest, in order of ElementId.
 /// @param degree          of the bases on patches, 0..max_degree

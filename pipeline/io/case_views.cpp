@@ -121,7 +121,7 @@ struct Collected {
 void add_patch(Collected& view, std::int32_t number, const model::Patch& patch) {
     std::vector<Vec3> corners;
     corners.reserve(patch.points.size());
-    for (const Vec2& uv : patch.points) corners.push_back(geometry::evaluate(patch.surface, uv).position);
+    for (const Vec2& uv : patch.points) corners.push_back(geometry::position(patch.surface, uv));
     view.add(corners, patch.triangles);
     const std::size_t count = view.triangles.size();
     view.patches.resize(count, number);

@@ -92,14 +92,39 @@ PairIntegral on_a_sphere(const ElementShape& a, const ElementShape& b) {
     return result;
 }
 
-std::vector<double> node_product(const ElementShape& a, const ElementShape& b, std::size_t level) {
-    const NodeSet &xs = a.rules[level], &ys = b.rules[level];
+std::vector<double> node_product(const ElementShape& a, std::size_t level_a, const ElementShape& b,
+                                 std::size_t level_b) {
+    const NodeSet &xs = a.rules[level_a], &ys = b.rules[level_b];
     std::vector<double> kernel(xs.nodes.size() * ys.nodes.size());
     for (std::size_t i = 0, k = 0; i < xs.nodes.size(); ++i)
         for (const SurfaceNode& y : ys.nodes) kernel[k++] = bounded_kernel(xs.nodes[i], y);
     std::vector<double> values(a.basis.size() * b.basis.size(), 0.0);
     add_node_product(xs, a.basis.size(), ys, b.basis.size(), kernel, values);
     return values;
+}
+
+std::vector<double> node_product(const ElementShape& a, const ElementShape& b, std::size_t level) {
+    return node_product(a, level, b, level);
+}
+
+// Different nodes on both sides, so that none meets itself; the mean of both ways round is symmetric.
+std::vector<double> self_product(const ElementShape& a, std::size_t level, std::size_t other_level) {
+    std::vector<double> values = node_product(a, level, a, other_level);
+    const std::size_t n = a.basis.size();
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t l = 0; l < k; ++l)
+            values[k * n + l] = values[l * n + k] = 0.5 * (values[k * n + l] + values[l * n + k]);
+    return values;
+}
+
+// Both on one smooth surface, along which the kernel stays bounded.
+bool share_a_surface(const ElementShape& a, const ElementShape& b) {
+    if (!a.surface || !b.surface) return false;
+    const model::Surface &s = *a.surface, &t = *b.surface;
+    return s.type == t.type && s.type != model::SurfaceType::BSpline &&
+           s.type != model::SurfaceType::Bilinear && s.origin == t.origin && s.axis_w == t.axis_w &&
+           s.radius == t.radius && s.minor_radius == t.minor_radius && s.half_angle_rad == t.half_angle_rad &&
+           s.orientation == t.orientation;
 }
 
 double difference(std::span<const double> p, std::span<const double> q) {
@@ -205,6 +230,7 @@ public:
         const std::vector<double> guess = node_product(outer_, inner_, 1);
         double scale = std::max(norm(guess), floor_);
         if (is_cluster(outer_) && !worth_every_facet()) return by_nodes(guess);
+        if (auto settled = settled_nodes(guess)) return *std::move(settled);
         // Nodes may say too much of pairs that touch: the inner integrals are to be as exact as the block needs.
         constexpr int most_runs = 3;
         for (int run = 1;; ++run) {
@@ -246,6 +272,20 @@ private:
         constexpr std::size_t coarse_facets = 1u << 14u, fine_facets = 1u << 16u;
         const std::size_t per_point = is_cluster(inner_) ? inner_.facets.size() : inner_.surface ? 128 : 64;
         return outer_.facets.size() * per_point <= (tolerance_ >= coarse ? coarse_facets : fine_facets);
+    }
+
+    // Where elements lie well apart, or on one smooth surface, and more nodes change little, they do.
+    std::optional<OuterResult> settled_nodes(const std::vector<double>& guess) const {
+        constexpr double safety = 2.0;
+        const bool apart = glm::distance(outer_.centre, inner_.centre) > outer_.radius + inner_.radius;
+        if (is_cluster(outer_) || is_cluster(inner_) || tolerance_ < believed ||
+            !(apart || share_a_surface(outer_, inner_)))
+            return std::nullopt;
+        const bool itself = outer_.id == inner_.id;
+        std::vector<double> values = itself ? self_product(outer_, 2, 1) : node_product(outer_, inner_, 2);
+        const double change = difference(values, itself ? self_product(outer_, 1, 0) : guess);
+        if (safety * change > tolerance_ * std::max(norm(values), floor_)) return std::nullopt;
+        return OuterResult{std::move(values), change};
     }
 
     // Their error is at most what fewer nodes are off from more.

@@ -86,7 +86,7 @@ private:
         if (!(value > 0.0)) return;
         if (options_.occlusion && !occluders_.empty()) {
             ++rays;
-            if (occluders_.occluded(x.position, y.position, options_.occluders)) return;
+            if (occluders_.occluded(x.sight_point(), y.sight_point(), options_.occluders)) return;
         }
         for (std::size_t k = 0; k < phi_.size(); ++k)
             for (std::size_t l = 0; l < psi_.size(); ++l)

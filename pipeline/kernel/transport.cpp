@@ -184,7 +184,7 @@ public:
         for (std::size_t j = 0; j < kernel.size(); ++j) {
             if (!(kernel[j] > 0.0)) continue;
             ++cast_;
-            if (!occluders_.occluded(x.position, ys.nodes[j].position, among_)) continue;
+            if (!occluders_.occluded(x.sight_point(), ys.nodes[j].sight_point(), among_)) continue;
             kernel[j] = 0.0;
             ++blocked_;
         }
@@ -276,16 +276,20 @@ private:
 
     // Behind many polygons most pairs are wholly hidden or wholly clear: a few rays that agree are believed.
     Sight probed() {
-        constexpr std::size_t probes = 16, stride = 7;
+        constexpr std::size_t probes = 16, most_tries = 256; // of curved pairs few nodes may face each other
         const auto& xs = a_.rules[1].nodes;
         const auto& ys = b_.rules[1].nodes;
+        const double all = static_cast<double>(xs.size() * ys.size());
         std::size_t cast = 0, hidden = 0;
-        for (std::size_t k = 0; k < 2 * probes && cast < probes; ++k) {
-            const SurfaceNode& x = xs[k * xs.size() / (2 * probes)];
-            const SurfaceNode& y = ys[(stride * k) % ys.size()];
+        for (std::size_t k = 0; k < most_tries && cast < probes; ++k) {
+            // Multiples of the golden section spread over all pairs of nodes.
+            const double turns = static_cast<double>(k + 1) * (std::numbers::phi - 1.0);
+            const auto pair = static_cast<std::size_t>((turns - std::floor(turns)) * all);
+            const SurfaceNode& x = xs[pair / ys.size()];
+            const SurfaceNode& y = ys[pair % ys.size()];
             if (!(kernel_value(x, y) > 0.0)) continue;
             ++cast;
-            hidden += occluders_.occluded(x.position, y.position, options_.occluders) ? 1u : 0u;
+            hidden += occluders_.occluded(x.sight_point(), y.sight_point(), options_.occluders) ? 1u : 0u;
         }
         block_.rays += static_cast<std::uint32_t>(cast);
         if (cast < probes || (hidden > 0 && hidden < cast)) return Sight::Many;
@@ -320,7 +324,8 @@ private:
 
     // Curved elements and clusters: all of the block to the tolerance, and of it what rays between nodes find visible.
     void curved(Sight sight) {
-        const double floor = negligible * std::sqrt(std::min(a_.area, b_.area) / std::max(a_.area, b_.area));
+        const double share = a_.id == b_.id ? options_.own_floor : options_.curved_floor;
+        const double floor = share * std::sqrt(std::min(a_.area, b_.area) / std::max(a_.area, b_.area));
         if (sight == Sight::Clear) {
             PairIntegral whole = curved_pair(a_, b_, options_.tolerance, floor);
             block_.values = std::move(whole.values);

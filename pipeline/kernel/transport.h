@@ -25,6 +25,8 @@ struct TransportOptions {
         1e-2; ///< of a block with something in between [1], tolerance..0.1, relative to its size
     double sight_floor =
         1e-3; ///< or to this part of the largest block that elements of such areas can have [1], 0..1
+    double curved_floor = 1e-3;    ///< or to this part, where an element is curved or a cluster [1], 0..1
+    double own_floor = 1e-3;       ///< and of an element with itself [1], 0..1
     bool occlusion = true;         ///< false: nothing stands between any pair
     bool exact_sight = true;       ///< visible parts of polygons by clipping where few polygons can hide them
     std::size_t most_blockers = 6; ///< few, for exact_sight

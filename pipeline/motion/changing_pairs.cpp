@@ -142,7 +142,7 @@ Glimpse ChangingPairs::glimpse(std::size_t k) const {
         weights += weight;
         if (!(kernel > 0.0)) continue;
         sum.whole += weight * kernel;
-        if (!occluders_.occluded(x.position, y.position, among)) sum.visible += weight * kernel;
+        if (!occluders_.occluded(x.sight_point(), y.sight_point(), among)) sum.visible += weight * kernel;
     }
     const double scale = std::sqrt(a.area * b.area) / weights;
     return {scale * sum.visible, scale * sum.whole};

@@ -67,8 +67,8 @@ Vec2 display_steps(const model::Patch& patch, double cell_size) {
         for (int axis = 0; axis < 2; ++axis) {
             Vec2 next = uv;
             next[axis] += uv[axis] + step[axis] > high[axis] ? -step[axis] : step[axis];
-            const double way = glm::distance(geometry::evaluate(surface, next).position,
-                                             geometry::evaluate(surface, uv).position);
+            const double way =
+                glm::distance(geometry::position(surface, next), geometry::position(surface, uv));
             speed[axis] = std::max(speed[axis], way / step[axis]);
         }
     Vec2 result = glm::min(side / glm::max(speed, Vec2(1e-12)), high - low);

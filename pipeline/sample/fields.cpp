@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/sequence.h"
+#include "geometry/facet_surface.h"
 #include "sample/sampler.h"
 
 namespace kinelux::sample {
@@ -50,6 +51,22 @@ const geometry::Facet& facet_at(const geometry::ElementShape& element, const Vec
         return element.planar ? a.area > b.area : squared_distance(x, a) < squared_distance(x, b);
     };
     return *std::min_element(element.facets.begin(), element.facets.end(), better);
+}
+
+// What an element's basis is evaluated at, at a point on it.
+Vec2 parameter_at(const geometry::ElementShape& element, const Vec3& x) {
+    if (!element.surface) return geometry::facet_parameter(facet_at(element, x), x);
+    double nearest = std::numeric_limits<double>::infinity();
+    Vec2 parameter{0.0};
+    for (const geometry::Facet& facet : element.facets) {
+        const geometry::FacetSurface surface(element, facet);
+        const auto at = surface.at(surface.nearest(x));
+        const double distance = glm::distance(at.position, x);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        parameter = at.parameter;
+    }
+    return parameter;
 }
 
 struct Plane {
@@ -153,8 +170,8 @@ SurfaceSampler::SurfaceSampler(const model::DisplayMesh& mesh,
 }
 
 // Shadow rays start a little inside the triangles around the point, so that a corner of a wall is not on both sides of
-// the next one, and, on a bent surface, above the planes of these triangles and of the facets of their elements, which
-// are what casts shadows: so none of them is in the way.
+// the next one, and, on a bent surface, above the planes of these triangles and of the facets of their clusters, or
+// the chords of their curved patches, which are what casts shadows: so none of them is in the way.
 void SurfaceSampler::place_receivers(const Incidence& around, double clearance) {
     receivers_.resize(mesh_.points.size());
     core::parallel_for(mesh_.points.size(), [&](std::size_t p) {
@@ -175,11 +192,15 @@ void SurfaceSampler::place_receivers(const Incidence& around, double clearance) 
         receiver.ray_origin = start.position;
         const auto is_bent = [&](const Plane& plane) { return glm::dot(plane.normal, normal) < 1.0 - bent; };
         if (std::none_of(planes.begin(), planes.end(), is_bent)) return;
+        double chords = 0.0;
         for (const std::uint32_t t : around[p]) {
-            const geometry::Facet& facet = facet_at(elements_[mesh_.elements[t].value], start.position);
+            const geometry::ElementShape& element = elements_[mesh_.elements[t].value];
+            chords = std::max(chords, element.chord_height);
+            if (element.surface) continue;
+            const geometry::Facet& facet = facet_at(element, start.position);
             planes.push_back({facet.corners[0], facet.normal});
         }
-        receiver.ray_origin = start.position + lift_above(planes, start, clearance) * normal;
+        receiver.ray_origin = start.position + (chords + lift_above(planes, start, clearance)) * normal;
     });
 }
 
@@ -195,7 +216,7 @@ std::vector<SurfaceSampler::Contribution> SurfaceSampler::locate(std::size_t poi
         const Vec3& x = mesh_.points[point];
         result.push_back({id, basis_values_.size()});
         basis_values_.resize(basis_values_.size() + element.basis.size());
-        element.basis.evaluate(geometry::facet_parameter(facet_at(element, x), x),
+        element.basis.evaluate(parameter_at(element, x),
                                std::span(basis_values_).subspan(result.back().first_value));
     }
     return result;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/surface.h"
 #include "kernel/polygon_irradiance.h"
 
 namespace kinelux::sample {
@@ -15,6 +16,7 @@ constexpr double near_distance = 4.0;  ///< in radii of the element: nearer than
 constexpr double far_distance = 10.0;  ///< in radii of the element: farther than that its coarse nodes do
 constexpr double piece_distance = 2.0; ///< in longest edges of a piece: nearer than that it is cut
 constexpr int max_cuts = 5;            ///< of a facet, into four each time
+constexpr int curved_cuts = 2;         ///< of any facet of a curved element
 
 // cos+ cos'+ / (pi r^2)
 double exchange(const Receiver& receiver, const Vec3& x, const Vec3& normal) {
@@ -24,12 +26,14 @@ double exchange(const Receiver& receiver, const Vec3& x, const Vec3& normal) {
     return here > 0.0 && there > 0.0 ? here * there / (std::numbers::pi * r2 * r2) : 0.0;
 }
 
-std::array<geometry::Facet, 4> quarters(const geometry::Facet& facet) {
+// Corners of pieces of curved elements lie on the true surface.
+std::array<geometry::Facet, 4> quarters(const geometry::ElementShape& element, const geometry::Facet& facet) {
     std::array<Vec3, 3> x;
     std::array<Vec2, 3> uv;
     for (std::size_t e = 0; e < 3; ++e) {
-        x[e] = 0.5 * (facet.corners[e] + facet.corners[(e + 1) % 3]);
         uv[e] = 0.5 * (facet.parameters[e] + facet.parameters[(e + 1) % 3]);
+        x[e] = element.surface ? geometry::position(*element.surface, uv[e])
+                               : 0.5 * (facet.corners[e] + facet.corners[(e + 1) % 3]);
     }
     const auto piece = [&](const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& parameters) {
         return geometry::Facet{corners, parameters, facet.normal, 0.25 * facet.area};
@@ -90,7 +94,7 @@ void Gather::add_nodes(std::size_t element, const geometry::NodeSet& set, const 
         const double weight = node.weight * exchange(receiver, node.position, node.normal);
         if (!(weight > 0.0)) continue;
         reflected(element, std::span(set.basis).subspan(n * functions, functions), values);
-        rays.segments.push_back({receiver.position, node.position});
+        rays.segments.push_back({receiver.position, node.sight_point()});
         for (const double value : values) rays.arriving.push_back(weight * value);
     }
 }
@@ -98,18 +102,23 @@ void Gather::add_nodes(std::size_t element, const geometry::NodeSet& set, const 
 void Gather::add_piece(std::size_t element, const geometry::Facet& piece, const Receiver& receiver, int cuts,
                        Rays& rays) const {
     const Vec3 middle = (piece.corners[0] + piece.corners[1] + piece.corners[2]) / 3.0;
-    if (cuts < max_cuts && glm::distance(middle, receiver.position) < piece_distance * longest_edge(piece)) {
-        for (const geometry::Facet& quarter : quarters(piece))
+    const bool bent = elements_[element].surface && cuts < curved_cuts;
+    if (bent || (cuts < max_cuts &&
+                 glm::distance(middle, receiver.position) < piece_distance * longest_edge(piece))) {
+        for (const geometry::Facet& quarter : quarters(elements_[element], piece))
             add_piece(element, quarter, receiver, cuts + 1, rays);
         return;
     }
     const double factor = kernel::point_to_polygon(receiver.position, receiver.normal, piece.corners);
     if (!(factor > 0.0)) return;
     std::vector<double> basis(elements_[element].basis.size()), values(channels_ + 1);
-    elements_[element].basis.evaluate((piece.parameters[0] + piece.parameters[1] + piece.parameters[2]) / 3.0,
-                                      basis);
+    constexpr double third = 1.0 / 3.0;
+    Vec2 parameter;
+    const geometry::SurfaceNode node =
+        geometry::node_at(elements_[element], piece, {third, third, third}, parameter);
+    elements_[element].basis.evaluate(parameter, basis);
     reflected(element, basis, values);
-    rays.segments.push_back({receiver.position, middle});
+    rays.segments.push_back({receiver.position, node.sight_point()});
     for (const double value : values) rays.arriving.push_back(factor * value);
 }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/tessellation.h"
 #include "kernel/polygon_irradiance.h"
 
 namespace kinelux::sample {
@@ -87,6 +88,19 @@ bool belongs(const geometry::Facet& facet, const LightPanel& panel, double size)
            std::abs(glm::dot(facet.corners[0] - panel.facets.front()[0], panel.normal)) <= in_plane * size;
 }
 
+// The facets that stand for a curved element where it casts shadows, so that its light starts on them; its own else.
+std::vector<geometry::Facet> occluding_facets(const geometry::ElementShape& element) {
+    if (!element.surface) return element.facets;
+    std::vector<model::DomainTriangle> domain;
+    for (const geometry::Facet& facet : element.facets) domain.push_back(facet.parameters);
+    if (element.surface->orientation < 0.0)
+        for (model::DomainTriangle& t : domain) std::swap(t[1], t[2]);
+    std::vector<geometry::Facet> facets;
+    for (const model::DomainTriangle& t : geometry::tessellated(*element.surface, domain))
+        facets.push_back(geometry::facet_of(*element.surface, t));
+    return facets;
+}
+
 // Lambert's sum over the outline; right where all of the panel is above the receiver's horizon.
 double outline_sum(const Vec3& x, const Vec3& normal, const LightPanel& panel) {
     double sum = 0.0;
@@ -116,7 +130,7 @@ std::vector<LightPanel> light_panels(std::span<const geometry::ElementShape* con
     for (const geometry::ElementShape* element : elements) {
         // The facets of a planar element are in few panels; those of a bent one are compared with its own panels only.
         const std::size_t first = element->planar ? 0 : panels.size();
-        for (const geometry::Facet& facet : element->facets) {
+        for (const geometry::Facet& facet : occluding_facets(*element)) {
             if (!(facet.area > 0.0)) continue;
             const auto mine =
                 std::find_if(panels.begin() + static_cast<std::ptrdiff_t>(first), panels.end(),

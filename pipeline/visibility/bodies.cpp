@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <map>
 #include <unordered_map>
 #include <utility>
 
 #include "geometry/surface.h"
+#include "geometry/tessellation.h"
 #include "visibility/occluders.h"
 
 namespace kinelux::visibility {
 
 namespace {
-
-Vec3 point_of(const model::Surface& surface, const Vec2& uv) {
-    if (surface.type == model::SurfaceType::Plane)
-        return surface.origin + uv.x * surface.axis_u + uv.y * surface.axis_v;
-    return geometry::evaluate(surface, uv).position;
-}
 
 void add_triangle(Body& body, model::Triangle corners, const model::Surface& surface) {
     if (surface.orientation < 0.0) std::swap(corners[1], corners[2]);
@@ -33,21 +29,27 @@ void add_outline(Body& body, const model::Patch& patch, std::uint32_t first_poin
     }
 }
 
-void add_patch(Body& body, const model::Patch& patch) {
+void add_planar(Body& body, const model::Patch& patch) {
     const auto first = static_cast<std::uint32_t>(body.points.size());
     const auto first_triangle = static_cast<std::uint32_t>(body.triangles.size());
-    for (const Vec2& uv : patch.points) body.points.push_back(point_of(patch.surface, uv));
+    for (const Vec2& uv : patch.points) body.points.push_back(geometry::position(patch.surface, uv));
     for (const model::Triangle& t : patch.triangles)
         add_triangle(body, {first + t[0], first + t[1], first + t[2]}, patch.surface);
-    if (patch.surface.type == model::SurfaceType::Plane && !patch.loops.empty())
-        add_outline(body, patch, first, first_triangle);
+    if (!patch.loops.empty()) add_outline(body, patch, first, first_triangle);
 }
 
-void add_element(Body& body, const model::Patch& patch, std::span<const model::DomainTriangle> triangles) {
-    for (const model::DomainTriangle& triangle : triangles) {
-        const auto first = static_cast<std::uint32_t>(body.points.size());
-        for (const Vec2& uv : triangle) body.points.push_back(point_of(patch.surface, uv));
-        add_triangle(body, {first, first + 1, first + 2}, patch.surface);
+void add_curved(Body& body, const model::Patch& patch) {
+    std::map<std::pair<double, double>, std::uint32_t> numbers; // equal corners are one point
+    for (const model::DomainTriangle& triangle :
+         geometry::tessellated(patch.surface, geometry::domain_of(patch))) {
+        model::Triangle corners{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto [entry, added] = numbers.try_emplace({triangle[c].x, triangle[c].y},
+                                                            static_cast<std::uint32_t>(body.points.size()));
+            if (added) body.points.push_back(geometry::position(patch.surface, triangle[c]));
+            corners[c] = entry->second;
+        }
+        add_triangle(body, corners, patch.surface);
     }
 }
 
@@ -76,23 +78,12 @@ std::vector<Body> empty_bodies(const model::Scene& scene) {
 
 std::vector<Body> bodies_of(const model::PatchSet& patches, const model::Scene& scene) {
     std::vector<Body> bodies = empty_bodies(scene);
-    for (const model::Patch& patch : patches.patches) add_patch(bodies[patch.object.value], patch);
-    add_small(bodies, patches.small);
-    return bodies;
-}
-
-std::vector<Body> bodies_of(const model::PatchSet& patches, const model::ClusterTree& tree,
-                            const model::Scene& scene) {
-    std::vector<Body> bodies = empty_bodies(scene);
-    for (const model::Patch& patch : patches.patches)
-        if (patch.surface.type == model::SurfaceType::Plane) add_patch(bodies[patch.object.value], patch);
-    for (const model::Element& element : tree.elements) {
-        if (!element.patch) continue;
-        const model::Patch& patch = patches.patches[element.patch->value];
-        if (patch.surface.type != model::SurfaceType::Plane)
-            add_element(
-                bodies[patch.object.value], patch,
-                std::span(tree.domain_triangles).subspan(element.first_triangle, element.triangle_count));
+    for (const model::Patch& patch : patches.patches) {
+        Body& body = bodies[patch.object.value];
+        if (patch.surface.type == model::SurfaceType::Plane)
+            add_planar(body, patch);
+        else
+            add_curved(body, patch);
     }
     add_small(bodies, patches.small);
     return bodies;

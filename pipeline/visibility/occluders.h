@@ -10,7 +10,6 @@
 
 #include "core/vec.h"
 #include "geometry/pose.h"
-#include "model/cluster_tree.h"
 #include "model/mesh.h"
 #include "model/patch_set.h"
 #include "model/scene.h"
@@ -84,11 +83,8 @@ private:
 };
 
 /// The occluding triangles of the fitted scene, one body per object of the scene, in order, with the outlines of planar
-/// patches. Right where all patches are plane; the triangles of a curved patch are chords that may hide finer elements on its hollow side.
+/// patches. Curved patches are tessellated; rays from their hollow side start at SurfaceNode::sight_point().
 std::vector<Body> bodies_of(const model::PatchSet& patches, const model::Scene& scene);
-/// The same with the elements' own facets on curved patches, so that no element hides behind another chord of its patch.
-std::vector<Body> bodies_of(const model::PatchSet& patches, const model::ClusterTree& tree,
-                            const model::Scene& scene);
 /// The same of the scene's own meshes, unfitted.
 std::vector<Body> bodies_of(const model::Scene& scene);
 

@@ -161,7 +161,7 @@ TEST(Cluster, round_bodies_are_gathered_within_the_limits) {
                support::turned_inside_out(support::box_mesh(Vec3{-5.0, -5.0, 0.0}, Vec3{5.0, 5.0, 4.0})));
     add_object(scene, "column", support::prism_mesh(Vec3{0.0}, 0.3, 4.0, 48));
     scene.objects[1].mesh.two_sided.assign(scene.objects[1].mesh.triangles.size(), 1);
-    const model::PatchSet patches = patches_of(scene);
+    const model::PatchSet patches = fit::fit_patches(scene, {.round_face_turn_deg = 0.0}).patches;
     const ClusterOptions options{.element_size = 1.0, .cluster_size = 1.0, .normal_spread_deg = 40.0};
     const model::ClusterTree tree = built(patches, options);
     ASSERT_FALSE(tree.clusters.empty());

@@ -132,7 +132,7 @@ TEST(SurfaceFields, bent_surfaces_do_not_shadow_themselves) {
         c.tree.elements.insert(c.tree.elements.begin(), tube);
         c.shapes = geometry::element_shapes(c.set, c.tree, 0, 0);
         c.mesh = display_mesh(c.shapes, c.set, c.tree, 0.1);
-        c.occluders = visibility::Occluders(visibility::bodies_of(c.set, c.tree, c.scene));
+        c.occluders = visibility::Occluders(visibility::bodies_of(c.set, c.scene));
         const model::SurfaceFields fields = c.fields(test::uniform_frame(c.shapes, c.scene, 0.0, 0.0));
         const std::array<Vec3, 4> corners{
             lamp.surface.origin, lamp.surface.origin + 0.4 * lamp.surface.axis_u,
@@ -196,7 +196,7 @@ TEST(SurfaceFields, clusters_are_lit_smoothly_up_to_their_vertices) {
     c.tree.elements.push_back(lit_by);
     c.shapes = geometry::element_shapes(c.set, c.tree, 0, 0);
     c.mesh = display_mesh(c.shapes, c.set, c.tree, 0.1);
-    c.occluders = visibility::Occluders(visibility::bodies_of(c.set, c.tree, c.scene));
+    c.occluders = visibility::Occluders(visibility::bodies_of(c.set, c.scene));
     const model::SurfaceFields fields = c.fields(test::uniform_frame(c.shapes, c.scene, 0.0, 0.0));
     const std::array<Vec3, 4> corners{Vec3(3, -0.2, -0.2), Vec3(3, -0.2, 0.2), Vec3(3, 0.2, 0.2),
                                       Vec3(3, 0.2, -0.2)};

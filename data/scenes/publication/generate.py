@@ -79,7 +79,7 @@ def billiard(rings):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rings", type=int, default=8, help="of faces on a billiard ball (default 8)")
+    parser.add_argument("--rings", type=int, default=16, help="of faces on a billiard ball (default 16)")
     parser.add_argument("-o", "--output", type=pathlib.Path,
                         default=pathlib.Path(__file__).resolve().parent / "publication.obj")
     arguments = parser.parse_args()
