@@ -1,6 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+include(GNUInstallDirs)
+
 if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release)
+endif()
+find_program(KINELUX_CCACHE ccache)
+if(KINELUX_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${KINELUX_CCACHE}")
+    set(CMAKE_C_COMPILER_LAUNCHER "${KINELUX_CCACHE}")
 endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 
@@ -31,7 +38,7 @@ function(kinelux_module name)
     if(arg_SOURCES)
         add_library(kinelux_${name} STATIC ${arg_SOURCES})
         set(scope PUBLIC)
-        target_link_libraries(kinelux_${name} PUBLIC ${arg_LINKS} PRIVATE kinelux_compile_options ${arg_PRIVATE_LINKS})
+        target_link_libraries(kinelux_${name} PUBLIC ${arg_LINKS} PRIVATE $<BUILD_INTERFACE:kinelux_compile_options> ${arg_PRIVATE_LINKS})
     else()
         add_library(kinelux_${name} INTERFACE)
         set(scope INTERFACE)
@@ -42,6 +49,10 @@ function(kinelux_module name)
     target_compile_definitions(kinelux_${name} ${scope} GLM_FORCE_CTOR_INIT GLM_ENABLE_EXPERIMENTAL)
     target_sources(kinelux_${name} ${scope}
         FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/pipeline" FILES ${arg_HEADERS})
+    set_target_properties(kinelux_${name} PROPERTIES EXPORT_NAME ${name})
+    install(TARGETS kinelux_${name} EXPORT kinelux
+        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/kinelux"
+        FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kinelux")
 endfunction()
 
 # kinelux_stage(name LINKS ...): an executable of stages/<name>.cpp.

@@ -188,21 +188,19 @@ int run_command(const std::vector<std::string>& arguments) {
 }
 
 int drive(const std::vector<std::string>& arguments, std::span<const Command> commands) {
-    std::vector<std::string> known;
-    TextTable table({"", ""});
-    for (const Command& command : commands) {
-        known.push_back(command.name);
-        table.row({command.name, command.summary});
-    }
-    for (const StageCall& stage : stage_calls()) {
-        known.emplace_back(stage.name);
-        table.row({stage.name, fmt::format("kinelux-{}: {}", stage.name, stage.summary)});
-    }
+    std::vector<std::pair<std::string, std::string>> described;
+    for (const Command& command : commands) described.emplace_back(command.name, command.summary);
+    for (const StageCall& stage : stage_calls())
+        described.emplace_back(stage.name, fmt::format("kinelux-{}: {}", stage.name, stage.summary));
     for (const auto& [name, summary] :
          {std::pair("reference", "measures the exported irradiance against path tracing"),
-          std::pair("study", "what accuracy costs on a scene, with measured errors")}) {
-        known.emplace_back(name);
-        table.row({name, fmt::format("kinelux-{}: {}", name, summary)});
+          std::pair("study", "what accuracy costs on a scene, with measured errors")})
+        described.emplace_back(name, fmt::format("kinelux-{}: {}", name, summary));
+    std::vector<std::string> known;
+    TextTable table({"", ""});
+    for (const auto& [name, summary] : described) {
+        known.push_back(name);
+        table.row({name, summary});
     }
 
     if (arguments.empty()) throw core::OptionError("a command is missing; see kinelux --help");
@@ -212,6 +210,15 @@ int drive(const std::vector<std::string>& arguments, std::span<const Command> co
         fmt::print("kinelux COMMAND [options]\nDiffuse global illumination of scenes with moving bodies.\n{}"
                    "\nkinelux COMMAND --help lists the options of a command.\n",
                    table.text());
+        return 0;
+    }
+    if (word == "--help-man") {
+        fmt::print(".TH kinelux 1 \"\" \"Kinelux {}\"\n.SH NAME\nkinelux \\- diffuse global illumination of "
+                   "scenes with moving "
+                   "bodies\n.SH SYNOPSIS\nkinelux COMMAND [options]\n.SH COMMANDS\n",
+                   core::version());
+        for (const auto& [name, summary] : described) fmt::print(".TP\n.B {}\n{}\n", name, summary);
+        fmt::print(".SH SEE ALSO\nEach command has a page of its own, as kinelux\\-run(1).\n");
         return 0;
     }
     if (word == "--version") {

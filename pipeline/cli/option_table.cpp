@@ -208,9 +208,10 @@ OptionTable::Parsed OptionTable::parse(const std::vector<std::string>& arguments
     CLI::App app;
     app.set_help_flag();
     app.allow_extras();
-    bool help_wanted = false, markdown_wanted = false, version_wanted = false;
+    bool help_wanted = false, markdown_wanted = false, man_wanted = false, version_wanted = false;
     app.add_flag("-h,--help", help_wanted);
     app.add_flag("--help-markdown", markdown_wanted);
+    app.add_flag("--help-man", man_wanted);
     app.add_flag("--version", version_wanted);
     std::vector<std::string> known{"--help", "--version"};
     for (Entry& entry : entries_) {
@@ -226,11 +227,11 @@ OptionTable::Parsed OptionTable::parse(const std::vector<std::string>& arguments
     } catch (const CLI::ParseError& error) {
         throw core::OptionError(one_line(error.what()) + "; see --help");
     }
-    if (help_wanted || markdown_wanted || version_wanted) {
+    if (help_wanted || markdown_wanted || man_wanted || version_wanted) {
         if (version_wanted)
             fmt::print("{} {}\n", program_, core::version());
         else
-            fmt::print("{}", markdown_wanted ? markdown() : help());
+            fmt::print("{}", markdown_wanted ? markdown() : man_wanted ? man() : help());
         return Parsed::Answered;
     }
     if (const auto extras = app.remaining(); !extras.empty()) throw unknown_option(extras.front(), known);
@@ -255,8 +256,8 @@ std::string OptionTable::usage() const {
     return text + " [options]";
 }
 
-std::string OptionTable::help() const {
-    TextTable table({"", ""});
+std::vector<std::pair<std::string, std::string>> OptionTable::described() const {
+    std::vector<std::pair<std::string, std::string>> rows;
     for (const Entry& entry : entries_) {
         const OptionRow& row = entry.row;
         const std::string range = range_text(row);
@@ -266,11 +267,36 @@ std::string OptionTable::help() const {
             help += fmt::format(" (default: {})", entry.default_text);
         std::string flags = row.flags;
         if (const auto comma = flags.find(','); comma != std::string::npos) flags.replace(comma, 1, ", ");
-        table.row(
-            {entry.positional ? entry.name : flags + (is_switch(row) ? "" : " " + value_word(row)), help});
+        rows.emplace_back(
+            entry.positional ? entry.name : flags + (is_switch(row) ? "" : " " + value_word(row)), help);
     }
-    table.row({"-h, --help", "this text"});
-    table.row({"--version", "the program's version"});
+    rows.emplace_back("-h, --help", "this text");
+    rows.emplace_back("--version", "the program's version");
+    return rows;
+}
+
+std::string OptionTable::man() const {
+    const auto escaped = [](const std::string& text) {
+        std::string result;
+        for (const char c : text) {
+            if (c == '-' || c == '\\') result += '\\';
+            result += c;
+        }
+        return result;
+    };
+    std::string page_name = program_; // "kinelux run" has the page kinelux-run
+    std::replace(page_name.begin(), page_name.end(), ' ', '-');
+    std::string text =
+        fmt::format(".TH {0} 1 \"\" \"Kinelux {1}\"\n.SH NAME\n{0} \\- {2}\n.SH SYNOPSIS\n{3}\n.SH OPTIONS\n",
+                    escaped(page_name), core::version(), escaped(summary_), escaped(usage()));
+    for (const auto& [flags, meaning] : described())
+        text += fmt::format(".TP\n.B {}\n{}\n", escaped(flags), escaped(meaning));
+    return text + ".SH SEE ALSO\nkinelux(1)\n";
+}
+
+std::string OptionTable::help() const {
+    TextTable table({"", ""});
+    for (const auto& [flags, meaning] : described()) table.row({flags, meaning});
     const std::string rows = table.text();
     return fmt::format("{}\n{}\n\n{}", usage(), summary_, rows.substr(rows.find('\n') + 1));
 }

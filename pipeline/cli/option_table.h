@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -62,6 +63,8 @@ public:
     std::string help() const;
     /// The rows as a Markdown table: option, unit, range, default, meaning.
     std::string markdown() const;
+    /// A manual page for man(1).
+    std::string man() const;
     /// "name value unit, ..." of all options that decide the result.
     std::string effective() const;
     /// Puts all values under "options/<name>" of a record.
@@ -71,6 +74,9 @@ public:
     const std::string& program() const { return program_; }
 
 private:
+    /// Each option as it is written, and what it means; --help and --version last.
+    std::vector<std::pair<std::string, std::string>> described() const;
+
     struct Entry {
         OptionRow row;
         std::string name;         ///< "threads" of "-j,--threads"

@@ -106,6 +106,7 @@ public:
         std::sort(corners.begin(), corners.end());
         corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
         std::vector<Vec3> points;
+        points.reserve(corners.size());
         for (const std::uint32_t corner : corners) points.push_back(body_.points[corner]);
         std::vector<Surface> surfaces = nearest_round_surfaces(points, samples);
         for (Surface& s : surfaces) orient(s, samples);

@@ -26,7 +26,7 @@ public:
     }
 
     /// The point with its basis values; as weight the area [m2] over the density it was drawn with.
-    SurfaceNode at(Vec2 u, std::span<double> phi) const {
+    SurfaceNode at(const Vec2& u, std::span<double> phi) const {
         const auto found = std::upper_bound(shares_.begin(), shares_.end() - 1, u.x);
         const double low = found == shares_.begin() ? 0.0 : *(found - 1), share = *found - low;
         // What choosing the facet left of the number is uniform again; the root makes it so on a triangle.
