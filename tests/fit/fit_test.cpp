@@ -220,14 +220,19 @@ TEST(Fit, warped_wall_of_the_cornell_box_is_two_exact_patches_or_one_within_tole
     EXPECT_NEAR(coarse.area_out, coarse.area_in, 1e-4 * coarse.area_in);
 }
 
+// A column of radius 0.4 m and height 3 m.
+model::Scene column_over_a_floor(std::uint32_t sides) {
+    model::Scene scene = empty_scene();
+    model::Mesh floor;
+    add_sheet(floor, Vec3{-5.0, -5.0, -1.0}, Vec3{10.0, 0.0, 0.0}, Vec3{0.0, 10.0, 0.0});
+    add_object(scene, "floor", floor);
+    add_object(scene, "column", support::prism_mesh(Vec3{0.0}, 0.4, 3.0, sides));
+    return scene;
+}
+
 TEST(Fit, coarse_round_column_becomes_small_triangles) {
     for (const std::uint32_t sides : {13U, 14U}) {
-        model::Scene scene = empty_scene();
-        model::Mesh floor;
-        add_sheet(floor, Vec3{-5.0, -5.0, -1.0}, Vec3{10.0, 0.0, 0.0}, Vec3{0.0, 10.0, 0.0});
-        add_object(scene, "floor", floor);
-        add_object(scene, "column", support::prism_mesh(Vec3{0.0}, 0.4, 3.0, sides));
-        const FitResult result = fitted(scene);
+        const FitResult result = fitted(column_over_a_floor(sides));
         EXPECT_EQ(result.patches.patches.size(), 3U) << sides; // the floor and the column's flat ends
         EXPECT_EQ(result.faces_left_small, 2 * sides);
         EXPECT_NEAR(result.area_out, result.area_in, 1e-12 * result.area_in);
@@ -236,12 +241,7 @@ TEST(Fit, coarse_round_column_becomes_small_triangles) {
 
 TEST(Fit, fine_round_column_becomes_one_patch_and_flat_ends) {
     for (const std::uint32_t sides : {16U, 48U}) {
-        model::Scene scene = empty_scene();
-        model::Mesh floor;
-        add_sheet(floor, Vec3{-5.0, -5.0, -1.0}, Vec3{10.0, 0.0, 0.0}, Vec3{0.0, 10.0, 0.0});
-        add_object(scene, "floor", floor);
-        add_object(scene, "column", support::prism_mesh(Vec3{0.0}, 0.4, 3.0, sides));
-        const FitResult result = fitted(scene);
+        const FitResult result = fitted(column_over_a_floor(sides));
         EXPECT_EQ(result.patches.patches.size(), 4U) << sides;
         EXPECT_EQ(result.round_patches, 1U);
         EXPECT_EQ(result.faces_left_small, 0U);
