@@ -26,24 +26,33 @@ std::set<std::uint32_t> exported_frames(const model::Scene& scene, const model::
     return frames;
 }
 
-Exported export_frames(LightCase& light, const model::Solution& solution, const model::DisplayMesh& mesh,
-                       const std::set<std::uint32_t>& written, const sample::DirectLightOptions& direct,
+Exported export_frames(LightCase& light, const model::Solution& solution,
+                       const std::set<std::uint32_t>& written, const DisplayOptions& options,
                        const io::CaseFolder& folder) {
     Exported exported;
-    const sample::SurfaceSampler sampler(mesh, light.elements, light.scene, light.occluders.end_offset());
-    io::ViewWriter writer(folder.path(), mesh, light.scene);
+    const model::DisplayMesh rest =
+        sample::display_mesh(light.elements, light.patches, light.tree, options.cell_size);
+    io::ViewWriter writer(folder.path(), light.scene);
+    const auto write = [&](const model::FrameSolution& frame, std::span<const geometry::Pose> poses) {
+        const auto [mesh, unresolved_area] =
+            sample::shadow_mesh(rest, light.patches, light.elements, light.scene, frame.time_s, poses,
+                                light.occluders, options.direct, options.shadows);
+        const sample::SurfaceSampler sampler(mesh, light.elements, light.scene, light.occluders.end_offset());
+        writer.write_frame(frame.frame, mesh,
+                           sampler.fields(solution.layout, frame, poses, light.occluders, options.direct));
+        ++exported.frames;
+        exported.cells = std::max<std::uint64_t>(exported.cells, mesh.triangles.size());
+        exported.points = std::max<std::uint64_t>(exported.points, mesh.points.size());
+        exported.unresolved_area = std::max(exported.unresolved_area, unresolved_area);
+    };
     core::Progress progress("export", solution.frames.size());
     for (const model::FrameSolution& frame : solution.frames) {
         cli::Stage::throw_if_stopped();
         const auto poses = geometry::object_poses(light.scene, frame.time_s);
         light.occluders.set_poses(poses);
-        if (written.contains(frame.frame)) {
-            writer.write_frame(frame.frame,
-                               sampler.fields(solution.layout, frame, poses, light.occluders, direct));
-            ++exported.frames;
-        }
+        if (written.contains(frame.frame)) write(frame, poses);
         const auto readings = sample::meter_readings(light.elements, light.scene, solution.layout, frame,
-                                                     poses, light.occluders, direct);
+                                                     poses, light.occluders, options.direct);
         exported.meters.insert(exported.meters.end(), readings.begin(), readings.end());
         progress.advance(1, fmt::format("frame {}", frame.frame));
     }

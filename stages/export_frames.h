@@ -12,6 +12,7 @@
 #include "model/solution.h"
 #include "model/surface_field.h"
 #include "sample/sampler.h"
+#include "sample/shadow_mesh.h"
 
 namespace kinelux::stages {
 
@@ -20,14 +21,23 @@ namespace kinelux::stages {
 std::set<std::uint32_t> exported_frames(const model::Scene& scene, const model::Solution& solution,
                                         const std::optional<cli::FrameRange>& range);
 
+/// How finely fields are shown.
+struct DisplayOptions {
+    double cell_size = 0.0;            ///< largest edge of a triangle [m]
+    sample::ShadowMeshOptions shadows; ///< smallest_edge >= cell_size: the same triangles in all frames
+    sample::DirectLightOptions direct;
+};
+
 struct Exported {
     std::uint64_t frames = 0;
+    std::uint64_t cells = 0, points = 0;     ///< most of any frame
+    double unresolved_area = 0.0;            ///< most of any frame [m2]; see sample::ShadowMesh
     std::vector<model::MeterReading> meters; ///< of all frames of the solution
 };
 
 /// Writes view.pvd, the frames and view.py; reads the meters of every frame.
-Exported export_frames(LightCase& light, const model::Solution& solution, const model::DisplayMesh& mesh,
-                       const std::set<std::uint32_t>& written, const sample::DirectLightOptions& direct,
+Exported export_frames(LightCase& light, const model::Solution& solution,
+                       const std::set<std::uint32_t>& written, const DisplayOptions& options,
                        const io::CaseFolder& folder);
 
 } // namespace kinelux::stages

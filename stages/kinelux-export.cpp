@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
                       .outputs = {"view.pvd", "view.py", "meters.csv", "frames"}});
     const std::uint64_t& seed = stage.add_seed();
     const auto& range = stage.add_frames("first and last frame that are exported");
-    std::optional<double> cell_size;
+    std::optional<double> cell_size, shadow_cell, shadow_tolerance;
     std::optional<int> probe_rays, shadow_rays;
     stage.options().add({.member = &cell_size,
                          .flags = "--cell-size",
@@ -24,7 +24,21 @@ int main(int argc, char** argv) {
                          .unit = "m",
                          .low = 1e-9,
                          .high = 1e9,
-                         .unset = "what the scene says, else a quarter of an element"});
+                         .unset = "what the scene says, else half an element"});
+    stage.options().add({.member = &shadow_cell,
+                         .flags = "--shadow-cell",
+                         .help = "cells along shadows get no smaller; the cell size or more: none are cut",
+                         .unit = "m",
+                         .low = 1e-9,
+                         .high = 1e9,
+                         .unset = "a sixteenth of the cell size"});
+    stage.options().add({.member = &shadow_tolerance,
+                         .flags = "--shadow-tolerance",
+                         .help = "direct light may differ by this share of its value from a linear one in a "
+                                 "cell, or cells are cut",
+                         .low = 1e-4,
+                         .high = 1.0,
+                         .unset = "twice the accuracy"});
     stage.options().add({.member = &probe_rays,
                          .flags = "--probe-rays",
                          .help = "per point and source; all alike = done",
@@ -39,27 +53,30 @@ int main(int argc, char** argv) {
                          .unset = "from the accuracy"});
     return stage.run(argc, argv, [&](cli::Stage&) {
         auto light = stage.step("read", [&] { return stages::read_light_case(stage.folder()); });
-        auto direct = sample::direct_light_options_for(light.scene);
-        direct.probe_rays = probe_rays.value_or(direct.probe_rays);
-        direct.shadow_rays = shadow_rays.value_or(direct.shadow_rays);
-        direct.seed = seed;
+        stages::DisplayOptions display;
+        display.cell_size =
+            cell_size.value_or(light.scene.exported.cell_size.value_or(0.5 * light.tree.element_size));
+        display.shadows.smallest_edge = shadow_cell.value_or(display.cell_size / 16.0);
+        display.shadows.tolerance = shadow_tolerance.value_or(2.0 * light.scene.accuracy.target);
+        display.direct = sample::direct_light_options_for(light.scene);
+        display.direct.probe_rays = probe_rays.value_or(display.direct.probe_rays);
+        display.direct.shadow_rays = shadow_rays.value_or(display.direct.shadow_rays);
+        display.direct.seed = seed;
         const auto solution = stage.step("read solution", [&] { return stage.folder().read_solution(); });
-        const double size =
-            cell_size.value_or(light.scene.exported.cell_size.value_or(0.25 * light.tree.element_size));
-        const auto mesh = stage.step(
-            "mesh", [&] { return sample::display_mesh(light.elements, light.patches, light.tree, size); });
-        const auto readings = stage.step("frames", [&] {
-            return stages::export_frames(light, solution, mesh,
-                                         stages::exported_frames(light.scene, solution, range), direct,
+        const auto exported = stage.step("frames", [&] {
+            return stages::export_frames(light, solution,
+                                         stages::exported_frames(light.scene, solution, range), display,
                                          stage.folder());
         });
-        stage.step("meters", [&] { io::write_meters(stage.folder().file("meters.csv"), readings.meters); });
+        stage.step("meters", [&] { io::write_meters(stage.folder().file("meters.csv"), exported.meters); });
 
-        stage.count("frames", readings.frames);
-        stage.count("cells", mesh.triangles.size());
-        stage.count("points", mesh.points.size());
-        stage.count("readings", readings.meters.size());
-        stage.figure("cell size", size, "m");
+        stage.count("frames", exported.frames);
+        stage.count("cells", exported.cells);
+        stage.count("points", exported.points);
+        stage.count("readings", exported.meters.size());
+        stage.figure("cell size", display.cell_size, "m");
+        stage.figure("smallest cell", display.shadows.smallest_edge, "m");
+        stage.figure("area of shadow edges sharper than cells", exported.unresolved_area, "m2");
         return core::ExitCode::Ok;
     });
 }

@@ -155,6 +155,15 @@ SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv) {
     return {d.position, (surface.orientation / area_factor) * across, area_factor};
 }
 
+SurfaceJet evaluate_towards(const model::Surface& surface, const Vec2& uv, const Vec2& inside) {
+    constexpr double way = 1e-6;
+    try {
+        return evaluate(surface, uv);
+    } catch (const core::GeometryError&) {
+        return evaluate(surface, uv + way * (inside - uv));
+    }
+}
+
 Vec3 position(const model::Surface& surface, const Vec2& uv) {
     return surface_tangents(surface, uv).position;
 }

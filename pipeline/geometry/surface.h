@@ -29,6 +29,10 @@ SurfaceTangents surface_tangents(const model::Surface& surface, const Vec2& uv);
 /// @throws GeometryError  a B-spline whose sizes do not fit, or a point where the surface has no normal
 SurfaceJet evaluate(const model::Surface& surface, const Vec2& uv);
 
+/// The same; where the surface has no normal (a pole, an apex), from a millionth of the way to a point inside.
+/// @throws GeometryError  as evaluate(), of the point inside
+SurfaceJet evaluate_towards(const model::Surface& surface, const Vec2& uv, const Vec2& inside);
+
 /// Position alone, which every surface has also where it has no normal (poles, tips, collapsed edges) [m].
 /// @throws GeometryError  a B-spline whose sizes do not fit
 Vec3 position(const model::Surface& surface, const Vec2& uv);

@@ -164,9 +164,8 @@ std::string csv_text(const std::string& text) {
 
 } // namespace
 
-ViewWriter::ViewWriter(fs::path folder, const model::DisplayMesh& mesh, const model::Scene& scene)
+ViewWriter::ViewWriter(fs::path folder, const model::Scene& scene)
     : folder_(std::move(folder)),
-      mesh_(mesh),
       scene_(scene),
       low_(std::numeric_limits<double>::max()),
       high_(std::numeric_limits<double>::lowest()) {
@@ -177,12 +176,13 @@ ViewWriter::ViewWriter(fs::path folder, const model::DisplayMesh& mesh, const mo
     fs::remove(folder_ / "view.pvd", failed);
 }
 
-void ViewWriter::write_frame(std::uint32_t frame, const model::SurfaceFields& fields) {
+void ViewWriter::write_frame(std::uint32_t frame, const model::DisplayMesh& mesh,
+                             const model::SurfaceFields& fields) {
     const std::string radiosity_name = array_name("Radiosity", model::radiosity_unit(scene_.quantity));
     const std::string irradiance_name = array_name("Irradiance", model::irradiance_unit(scene_.quantity));
     VtkTriangles view{
         .points = fields.points,
-        .triangles = mesh_.triangles,
+        .triangles = mesh.triangles,
         .precision = PointPrecision::Single,
         .time_s = fields.time_s,
         .names = {{"ObjectNames", object_names(scene_)}, {"MaterialNames", material_names(scene_)}}};
@@ -190,22 +190,22 @@ void ViewWriter::write_frame(std::uint32_t frame, const model::SurfaceFields& fi
 
     std::vector<float> normals;
     if (find_array(fields.point_arrays, "Normals") == nullptr) {
-        normals = moved_normals(mesh_, scene_, fields.time_s);
+        normals = moved_normals(mesh, scene_, fields.time_s);
         view.point_arrays.push_back(
             {.name = "Normals", .components = 3, .values = std::span<const float>(normals)});
     }
     std::vector<std::uint8_t> colour;
     const auto* radiosity = find_array(fields.point_arrays, radiosity_name);
     if (radiosity != nullptr && radiosity->components == 3) {
-        if (exposure_ == 0.0) exposure_ = exposure_for(mesh_, fields.points, *radiosity, scene_);
+        if (exposure_ == 0.0) exposure_ = exposure_for(mesh, fields.points, *radiosity, scene_);
         colour = colours(*radiosity, exposure_);
         view.point_arrays.push_back({.name = "Color",
                                      .components = 3,
                                      .component_names = {"red", "green", "blue"},
                                      .values = std::span<const std::uint8_t>(colour)});
     }
-    const TriangleIds ids(mesh_);
-    view.cell_arrays = id_arrays(ids, mesh_);
+    const TriangleIds ids(mesh);
+    view.cell_arrays = id_arrays(ids, mesh);
     for (const auto& array : fields.cell_arrays) view.cell_arrays.push_back(vtk_array(array));
 
     const std::string file = fmt::format("frames/frame_{:04}.vtu", frame);

@@ -16,13 +16,13 @@ namespace kinelux::io {
 /// by finish(), so that they never name a frame that is not there.
 class ViewWriter {
 public:
-    ViewWriter(std::filesystem::path folder, const model::DisplayMesh& mesh, const model::Scene& scene);
-    void write_frame(std::uint32_t frame, const model::SurfaceFields& fields);
+    ViewWriter(std::filesystem::path folder, const model::Scene& scene);
+    /// @param fields  of this mesh
+    void write_frame(std::uint32_t frame, const model::DisplayMesh& mesh, const model::SurfaceFields& fields);
     void finish();
 
 private:
     std::filesystem::path folder_;
-    const model::DisplayMesh& mesh_;
     const model::Scene& scene_;
     struct Written {
         double time_s;

@@ -12,10 +12,12 @@
 namespace kinelux::model {
 
 /// A triangulation of all elements on which fields are shown: vertices are shared inside a patch or cluster, never
-/// across. Positions are at rest; a frame moves the vertices of each object by its pose.
+/// across. Positions are at rest; a frame moves the vertices of each object by its pose. Frames may have meshes of
+/// their own.
 struct DisplayMesh {
-    std::vector<Vec3> points;  ///< [m], at rest
-    std::vector<Vec3> normals; ///< unit, one per point
+    std::vector<Vec3> points;     ///< [m], at rest
+    std::vector<Vec3> normals;    ///< unit, one per point
+    std::vector<Vec2> parameters; ///< u, v on its patch, one per point; of no meaning in a cluster
     std::vector<Triangle> triangles;
     std::vector<ElementId> elements;          ///< one per triangle
     std::vector<ObjectId> objects;            ///< one per triangle; triangles are sorted by object

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -86,9 +87,11 @@ void add_corners(const Receiver& receiver, std::span<const LightPanel> panels, R
 } // namespace
 
 DirectLightOptions direct_light_options_for(const model::Scene& scene) {
-    // A visible share found with n scrambled Sobol points is off by about 1 / n in the mean and a few times that at worst.
+    // A visible share found with n scrambled Sobol points is off by about n^(-3/4) where an edge cuts the source; half
+    // the target is left for it.
     DirectLightOptions options;
-    options.shadow_rays = static_cast<int>(std::clamp(2.0 / scene.accuracy.target, 32.0, 1024.0));
+    options.shadow_rays =
+        static_cast<int>(std::clamp(std::pow(2.0 / scene.accuracy.target, 4.0 / 3.0), 32.0, 4096.0));
     return options;
 }
 
@@ -127,7 +130,8 @@ double DirectLight::visible_share(const Receiver& receiver, const Source& source
     return rays.all > 0.0 ? rays.visible / rays.all : 1.0;
 }
 
-void DirectLight::irradiance(const Receiver& receiver, std::uint64_t stream, std::span<double> result) const {
+void DirectLight::irradiance(const Receiver& receiver, std::uint64_t stream, std::span<double> result,
+                             std::span<Seen> seen) const {
     std::fill(result.begin(), result.end(), 0.0);
     thread_local std::vector<double> cumulative_factors;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
@@ -138,11 +142,25 @@ void DirectLight::irradiance(const Receiver& receiver, std::uint64_t stream, std
             factor += point_to_panel(receiver.position, receiver.normal, panel);
             cumulative_factors.push_back(factor);
         }
-        if (!(factor > 0.0)) continue;
-        if (!occluders_.empty())
-            factor *= visible_share(receiver, source, cumulative_factors,
-                                    core::mix(core::mix(options_.seed, stream), s));
-        for (std::size_t c = 0; c < result.size(); ++c) result[c] += factor * source.exitance[c];
+        const double share = !(factor > 0.0) ? 0.0
+                             : occluders_.empty()
+                                 ? 1.0
+                                 : visible_share(receiver, source, cumulative_factors,
+                                                 core::mix(core::mix(options_.seed, stream), s));
+        for (std::size_t c = 0; c < result.size(); ++c) result[c] += share * factor * source.exitance[c];
+        if (!seen.empty()) seen[s] = share == 0.0 ? Seen::Nothing : share == 1.0 ? Seen::Whole : Seen::Partly;
+    }
+}
+
+void DirectLight::irradiance_unshadowed(const Receiver& receiver, std::span<const Seen> seen,
+                                        std::span<double> result) const {
+    std::fill(result.begin(), result.end(), 0.0);
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+        if (seen[s] == Seen::Nothing) continue;
+        double factor = 0.0;
+        for (const LightPanel& panel : sources_[s].panels)
+            factor += point_to_panel(receiver.position, receiver.normal, panel);
+        for (std::size_t c = 0; c < result.size(); ++c) result[c] += factor * sources_[s].exitance[c];
     }
 }
 

@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include "core/error.h"
 #include "geometry/domain_cut.h"
 #include "geometry/surface.h"
 #include "sample/sampler.h"
@@ -19,7 +18,6 @@ namespace {
 
 constexpr double crease_cosine = 0.766;                 ///< 40 degrees: a sharper edge is shown as an edge
 constexpr double turn_step_rad = std::numbers::pi / 12; ///< round surfaces are shown with 24 corners at least
-constexpr double pole_nudge = 1e-6; ///< towards the middle of the triangle, where there is a normal
 constexpr double cell_diagonal = std::numbers::sqrt2; ///< of a square cell: the longest edge of its triangles
 
 using UvKey = std::pair<double, double>;
@@ -30,9 +28,10 @@ class Builder {
 public:
     explicit Builder(model::DisplayMesh& mesh) : mesh_(mesh) {}
 
-    std::uint32_t add_point(const Vec3& position, const Vec3& normal, ObjectId object) {
+    std::uint32_t add_point(const Vec3& position, const Vec3& normal, const Vec2& uv, ObjectId object) {
         mesh_.points.push_back(position);
         mesh_.normals.push_back(normal);
+        mesh_.parameters.push_back(uv);
         mesh_.point_objects.push_back(object.value);
         return static_cast<std::uint32_t>(mesh_.points.size() - 1);
     }
@@ -101,14 +100,6 @@ std::vector<double> display_lines(const std::vector<std::pair<double, double>>& 
     return lines;
 }
 
-geometry::SurfaceJet jet_at(const model::Surface& surface, const Vec2& uv, const Vec2& inside) {
-    try {
-        return geometry::evaluate(surface, uv);
-    } catch (const core::GeometryError&) { // a pole or an apex
-        return geometry::evaluate(surface, uv + pole_nudge * (inside - uv));
-    }
-}
-
 std::vector<std::pair<double, double>> ranges(std::span<const geometry::ElementShape> elements,
                                               const model::ClusterTree& tree, int axis) {
     std::vector<std::pair<double, double>> result;
@@ -141,8 +132,9 @@ void add_patch(Builder& builder, std::span<const geometry::ElementShape> element
                 for (std::size_t c = 0; c < 3; ++c) {
                     const auto [entry, added] = numbers.try_emplace({piece[c].x, piece[c].y}, 0u);
                     if (added) {
-                        const geometry::SurfaceJet jet = jet_at(patch.surface, piece[c], inside);
-                        entry->second = builder.add_point(jet.position, jet.normal, patch.object);
+                        const geometry::SurfaceJet jet =
+                            geometry::evaluate_towards(patch.surface, piece[c], inside);
+                        entry->second = builder.add_point(jet.position, jet.normal, piece[c], patch.object);
                     }
                     corners[c] = entry->second;
                 }
@@ -222,7 +214,7 @@ public:
                         here.end(),
                         {piece.normal,
                          builder.add_point(piece.corners[c], smooth_normal(piece.corners[c], piece.normal),
-                                           shape.object)});
+                                           Vec2(0.0), shape.object)});
                 corners[c] = same->point;
             }
             builder.add_triangle(corners, shape, tree.elements[shape.id.value]);

@@ -10,48 +10,16 @@
 #include "core/parallel.h"
 #include "core/sequence.h"
 #include "geometry/facet_surface.h"
+#include "sample/receivers.h"
 #include "sample/sampler.h"
 
 namespace kinelux::sample {
 
 namespace {
 
-constexpr double nudge =
-    0.1; ///< of the way to the middle of the triangles around a point: past the gaps that fitting leaves
-constexpr double bent = 1e-9; ///< 1 - cosine between a triangle and its point's normal, of 4.5e-5 rad
-constexpr double least_cosine =
-    0.1; ///< triangles seen more edge-on from their point's normal lift it no further
 constexpr double same_place = 1e-6;        ///< of the mesh's extent
 constexpr double same_direction = 0.985;   ///< 10 degrees
 constexpr std::size_t points_at_once = 64; ///< of one task
-
-double squared_distance_to_edge(const Vec3& x, const Vec3& a, const Vec3& b) {
-    const Vec3 along = b - a;
-    const double length2 = glm::dot(along, along);
-    const double t = length2 > 0.0 ? std::clamp(glm::dot(x - a, along) / length2, 0.0, 1.0) : 0.0;
-    const Vec3 way = a + t * along - x;
-    return glm::dot(way, way);
-}
-
-double squared_distance(const Vec3& x, const geometry::Facet& facet) {
-    double nearest = std::numeric_limits<double>::infinity();
-    bool inside = true;
-    for (std::size_t e = 0; e < 3; ++e) {
-        const Vec3 &a = facet.corners[e], &b = facet.corners[(e + 1) % 3];
-        inside = inside && glm::dot(glm::cross(b - a, x - a), facet.normal) >= 0.0;
-        nearest = std::min(nearest, squared_distance_to_edge(x, a, b));
-    }
-    const double height = glm::dot(x - facet.corners[0], facet.normal);
-    return inside ? height * height : nearest;
-}
-
-// On a plane any facet gives the parameters; the largest gives them best.
-const geometry::Facet& facet_at(const geometry::ElementShape& element, const Vec3& x) {
-    const auto better = [&](const geometry::Facet& a, const geometry::Facet& b) {
-        return element.planar ? a.area > b.area : squared_distance(x, a) < squared_distance(x, b);
-    };
-    return *std::min_element(element.facets.begin(), element.facets.end(), better);
-}
 
 // What an element's basis is evaluated at, at a point on it.
 Vec2 parameter_at(const geometry::ElementShape& element, const Vec3& x) {
@@ -67,21 +35,6 @@ Vec2 parameter_at(const geometry::ElementShape& element, const Vec3& x) {
         parameter = at.parameter;
     }
     return parameter;
-}
-
-struct Plane {
-    Vec3 point, normal;
-};
-
-// How far a receiver must go along its normal to stand this high above all planes.
-double lift_above(std::span<const Plane> planes, const Receiver& receiver, double clearance) {
-    double lift = 0.0;
-    for (const Plane& plane : planes) {
-        const double height = glm::dot(plane.normal, receiver.position - plane.point);
-        lift = std::max(lift, (clearance - height) /
-                                  std::max(glm::dot(plane.normal, receiver.normal), least_cosine));
-    }
-    return lift;
 }
 
 struct Cell {
@@ -163,45 +116,14 @@ SurfaceSampler::SurfaceSampler(const model::DisplayMesh& mesh,
             around[corner].push_back(t);
             materials_[corner] = mesh.materials[t];
         }
-    place_receivers(around, clearance);
+    receivers_.resize(mesh.points.size());
+    core::parallel_for(mesh.points.size(), [&](std::size_t p) {
+        receivers_[p] =
+            receiver_on(mesh, rest_elements, mesh.points[p], mesh.normals[p], around[p], clearance);
+    });
     std::vector<std::vector<Contribution>> own;
     for (std::size_t p = 0; p < mesh.points.size(); ++p) own.push_back(locate(p, around[p]));
     share_between_neighbours(own);
-}
-
-// Shadow rays start a little inside the triangles around the point, so that a corner of a wall is not on both sides of
-// the next one, and, on a bent surface, above the planes of these triangles and of the facets of their clusters, or
-// the chords of their curved patches, which are what casts shadows: so none of them is in the way.
-void SurfaceSampler::place_receivers(const Incidence& around, double clearance) {
-    receivers_.resize(mesh_.points.size());
-    core::parallel_for(mesh_.points.size(), [&](std::size_t p) {
-        const Vec3 x = mesh_.points[p], normal = mesh_.normals[p];
-        Receiver& receiver = receivers_[p];
-        receiver = {x, normal};
-        if (around[p].empty()) return;
-        std::vector<Plane> planes;
-        Vec3 middle(0.0);
-        for (const std::uint32_t t : around[p]) {
-            const model::Triangle& c = mesh_.triangles[t];
-            const Vec3 a = mesh_.points[c[0]], b = mesh_.points[c[1]] - a, d = mesh_.points[c[2]] - a;
-            middle += a + (b + d) / 3.0;
-            const Vec3 cross = glm::cross(b, d);
-            if (glm::length(cross) > 0.0) planes.push_back({x, glm::normalize(cross)});
-        }
-        Receiver start{x + nudge * (middle / static_cast<double>(around[p].size()) - x), normal};
-        receiver.ray_origin = start.position;
-        const auto is_bent = [&](const Plane& plane) { return glm::dot(plane.normal, normal) < 1.0 - bent; };
-        if (std::none_of(planes.begin(), planes.end(), is_bent)) return;
-        double chords = 0.0;
-        for (const std::uint32_t t : around[p]) {
-            const geometry::ElementShape& element = elements_[mesh_.elements[t].value];
-            chords = std::max(chords, element.chord_height);
-            if (element.surface) continue;
-            const geometry::Facet& facet = facet_at(element, start.position);
-            planes.push_back({facet.corners[0], facet.normal});
-        }
-        receiver.ray_origin = start.position + (chords + lift_above(planes, start, clearance)) * normal;
-    });
 }
 
 // The elements around a point, each with the values of its basis there.
@@ -265,19 +187,13 @@ model::SurfaceFields SurfaceSampler::fields(const model::UnknownLayout& layout,
     if (frame.element_error.size() == elements_.size())
         fields.cell_arrays.push_back(error_array(mesh_, frame, unit));
 
-    std::vector<geometry::ElementShape> sources;
-    for (const geometry::ElementShape& element : elements_)
-        if (scene_.materials[element.material.value].emits())
-            sources.push_back(geometry::moved(element, poses[element.object.value]));
-    const DirectLight direct_light(sources, scene_, frame.time_s, occluders, options);
+    const DirectLight direct_light(moved_sources(elements_, scene_, poses), scene_, frame.time_s, occluders,
+                                   options);
     const auto exitances = model::exitances_at(scene_, frame.time_s);
     const auto evaluate = [&](std::size_t p, std::vector<double>& direct, std::vector<double>& bounced) {
         const geometry::Pose& pose = poses[mesh_.point_objects[p]];
         fields.points[p] = pose.point(mesh_.points[p]);
-        const Receiver& rest = receivers_[p];
-        direct_light.irradiance({pose.point(rest.position), pose.direction(rest.normal),
-                                 pose.point(rest.ray_origin.value_or(rest.position))},
-                                p, direct);
+        direct_light.irradiance(moved(receivers_[p], pose), p, direct);
         indirect(p, layout, frame.irradiance_indirect, bounced);
         const std::vector<double>& exitance = exitances[materials_[p].value];
         const std::vector<double>& reflectance = scene_.materials[materials_[p].value].reflectance;

@@ -25,6 +25,9 @@ struct DirectLightOptions {
 /// Options for a scene's accuracy: as many shadow rays that their sampling stays below the target in penumbra.
 DirectLightOptions direct_light_options_for(const model::Scene& scene);
 
+/// How much of a source is seen from a receiver.
+enum class Seen : std::uint8_t { Nothing, Partly, Whole };
+
 /// Where irradiance is wanted.
 struct Receiver {
     Vec3 position;                       ///< [m], on a surface (world)
@@ -44,7 +47,13 @@ public:
                 const visibility::Occluders& occluders, const DirectLightOptions& options);
     /// @param stream  a number that belongs to the receiver, so that its samples do not depend on threads
     /// @param result  one value per channel is set [W/m2 or lx]
-    void irradiance(const Receiver& receiver, std::uint64_t stream, std::span<double> result) const;
+    /// @param seen    one per source is set, if not empty
+    void irradiance(const Receiver& receiver, std::uint64_t stream, std::span<double> result,
+                    std::span<Seen> seen = {}) const;
+    /// The same without rays, where it is known of every source that the whole or nothing of it is seen.
+    void irradiance_unshadowed(const Receiver& receiver, std::span<const Seen> seen,
+                               std::span<double> result) const;
+    std::size_t source_count() const { return sources_.size(); }
 
 private:
     struct Source {
@@ -86,7 +95,6 @@ private:
         std::size_t first_value; ///< of basis_values_
     };
     using Incidence = std::vector<std::vector<std::uint32_t>>; ///< triangles around each point
-    void place_receivers(const Incidence& around, double clearance);
     std::vector<Contribution> locate(std::size_t point, const std::vector<std::uint32_t>& around);
     void share_between_neighbours(const std::vector<std::vector<Contribution>>& own);
     /// @param value  one per channel is set [W/m2 or lx]

@@ -54,7 +54,7 @@ model::SurfaceFields uniform_fields(const model::DisplayMesh& mesh, const model:
 class WriteViewTest : public testing::Test {
 protected:
     void write(const std::filesystem::path& folder) const {
-        ViewWriter writer(folder, mesh, scene);
+        ViewWriter writer(folder, scene);
         for (std::uint32_t frame = 0; frame < 3; ++frame)
             writer.write_frame(frame, uniform_fields(mesh, scene, scene.time.time_of_frame(frame),
                                                      10.0f + static_cast<float>(frame)));

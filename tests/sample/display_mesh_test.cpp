@@ -5,68 +5,22 @@
 
 #include <gtest/gtest.h>
 
+#include "sample/mesh_checks.h"
 #include "sample/sampler.h"
 #include "support/shapes.h"
 
 namespace kinelux::sample {
 namespace {
 
-double area_of(const model::DisplayMesh& mesh, std::size_t t) {
-    const model::Triangle& c = mesh.triangles[t];
-    return 0.5 * glm::length(glm::cross(mesh.points[c[1]] - mesh.points[c[0]],
-                                        mesh.points[c[2]] - mesh.points[c[0]]));
-}
-
-// A point of the mesh strictly inside an edge of one of its triangles is a T-junction.
-std::size_t t_junctions(const model::DisplayMesh& mesh) {
-    std::size_t count = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        for (std::size_t e = 0; e < 3; ++e) {
-            const std::uint32_t i = mesh.triangles[t][e], j = mesh.triangles[t][(e + 1) % 3];
-            const Vec3 a = mesh.points[i], b = mesh.points[j], along = b - a;
-            for (std::uint32_t p = 0; p < mesh.points.size(); ++p) {
-                const double s = glm::dot(mesh.points[p] - a, along) / glm::dot(along, along);
-                const double off = glm::distance(mesh.points[p], a + s * along);
-                if (p != i && p != j && s > 1e-9 && s < 1.0 - 1e-9 && off < 1e-9) ++count;
-            }
-        }
-    return count;
-}
-
-std::size_t open_edges(const model::DisplayMesh& mesh) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    for (const model::Triangle& t : mesh.triangles)
-        for (std::size_t e = 0; e < 3; ++e) ++edges[std::minmax(t[e], t[(e + 1) % 3])];
-    std::size_t open = 0;
-    for (const auto& [edge, count] : edges) open += count == 1 ? 1 : 0;
-    return open;
-}
-
-void expect_consistent(const model::DisplayMesh& mesh) {
-    const std::size_t n = mesh.triangles.size();
-    EXPECT_EQ(mesh.normals.size(), mesh.points.size());
-    EXPECT_EQ(mesh.point_objects.size(), mesh.points.size());
-    for (const std::size_t size : {mesh.elements.size(), mesh.objects.size(), mesh.materials.size(),
-                                   mesh.patches.size(), mesh.clusters.size(), mesh.degrees.size()})
-        EXPECT_EQ(size, n);
-    EXPECT_TRUE(std::is_sorted(mesh.objects.begin(), mesh.objects.end()));
-    for (std::size_t t = 0; t < n; ++t) {
-        const model::Triangle& c = mesh.triangles[t];
-        const Vec3 normal =
-            glm::cross(mesh.points[c[1]] - mesh.points[c[0]], mesh.points[c[2]] - mesh.points[c[0]]);
-        for (const std::uint32_t corner : c) EXPECT_GT(glm::dot(normal, mesh.normals[corner]), 0.0);
-    }
-}
-
 TEST(DisplayMesh, its_area_is_that_of_the_elements_and_no_edge_is_too_long) {
     const model::PatchSet set{support::box({0, 0, 0}, {1, 2, 0.7}, support::Facing::Inwards), {}};
     const auto tree = support::uniform_elements(set, 3);
     const auto shapes = geometry::element_shapes(set, tree, 1, 0);
     const model::DisplayMesh mesh = display_mesh(shapes, set, tree, 0.13);
-    expect_consistent(mesh);
+    test::expect_consistent(mesh);
     std::vector<double> areas(shapes.size(), 0.0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        areas[mesh.elements[t].value] += area_of(mesh, t);
+        areas[mesh.elements[t].value] += test::area_of(mesh, t);
         for (std::size_t e = 0; e < 3; ++e)
             EXPECT_LE(
                 glm::distance(mesh.points[mesh.triangles[t][e]], mesh.points[mesh.triangles[t][(e + 1) % 3]]),
@@ -94,11 +48,11 @@ TEST(DisplayMesh, a_patch_has_no_t_junction_and_no_crack) {
         }
         const auto shapes = geometry::element_shapes(set, used, 0, 0);
         const model::DisplayMesh mesh = display_mesh(shapes, set, used, 0.17);
-        expect_consistent(mesh);
+        test::expect_consistent(mesh);
         EXPECT_GT(mesh.triangles.size(), 60u);
-        EXPECT_EQ(t_junctions(mesh), 0u);
+        EXPECT_EQ(test::t_junctions(mesh), 0u);
         // Euler: a disc has points - edges + triangles = 1, and 2 edges = 3 triangles + open edges.
-        const std::size_t open = open_edges(mesh);
+        const std::size_t open = test::open_edges(mesh);
         EXPECT_EQ(2 * mesh.points.size(), 2 + mesh.triangles.size() + open);
     }
 }
@@ -121,9 +75,9 @@ TEST(DisplayMesh, round_patches_are_shown_round_with_exact_normals) {
         const auto tree = support::uniform_elements(set, 8);
         const auto shapes = geometry::element_shapes(set, tree, 0, 0);
         const model::DisplayMesh mesh = display_mesh(shapes, set, tree, 0.3);
-        expect_consistent(mesh);
+        test::expect_consistent(mesh);
         double area = 0.0;
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) area += area_of(mesh, t);
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) area += test::area_of(mesh, t);
         EXPECT_NEAR(area, std::numbers::pi, 0.01 * std::numbers::pi);
         for (std::size_t p = 0; p < mesh.points.size(); ++p) {
             EXPECT_NEAR(glm::length(Vec2(mesh.points[p])), 0.5, 1e-14);
@@ -161,16 +115,16 @@ TEST(DisplayMesh, cluster_triangles_are_split_evenly_and_share_points_only_where
     const auto tree = clusters({{0, 2, 4, 6}, {1, 3, 5, 7}});
     const auto shapes = geometry::element_shapes(set, tree, 0, 0);
     const model::DisplayMesh coarse = display_mesh(shapes, set, tree, 10.0);
-    expect_consistent(coarse);
+    test::expect_consistent(coarse);
     EXPECT_EQ(coarse.triangles.size(), 8u);
     EXPECT_EQ(coarse.points.size(), 24u); // faces meet at 70 degrees
     const model::DisplayMesh fine = display_mesh(shapes, set, tree, 0.5);
-    expect_consistent(fine);
+    test::expect_consistent(fine);
     double area = 0.0;
-    for (std::size_t t = 0; t < fine.triangles.size(); ++t) area += area_of(fine, t);
+    for (std::size_t t = 0; t < fine.triangles.size(); ++t) area += test::area_of(fine, t);
     EXPECT_NEAR(area, 4.0 * std::sqrt(3.0), 1e-12);
     EXPECT_EQ(fine.triangles.size(), 8u * 16u);
-    EXPECT_EQ(open_edges(fine), 8u * 3u * 4u);
+    EXPECT_EQ(test::open_edges(fine), 8u * 3u * 4u);
 }
 
 TEST(DisplayMesh, smooth_clusters_agree_on_normals_at_their_seam) {
