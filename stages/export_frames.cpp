@@ -38,8 +38,9 @@ Exported export_frames(LightCase& light, const model::Solution& solution,
             sample::shadow_mesh(rest, light.patches, light.elements, light.scene, frame.time_s, poses,
                                 light.occluders, options.direct, options.shadows);
         const sample::SurfaceSampler sampler(mesh, light.elements, light.scene, light.occluders.end_offset());
-        writer.write_frame(frame.frame, mesh,
-                           sampler.fields(solution.layout, frame, poses, light.occluders, options.direct));
+        writer.write_frame(
+            frame.frame, mesh,
+            sampler.fields(solution.layout, frame, poses, light.occluders, options.direct, options.indirect));
         ++exported.frames;
         exported.cells = std::max<std::uint64_t>(exported.cells, mesh.triangles.size());
         exported.points = std::max<std::uint64_t>(exported.points, mesh.points.size());

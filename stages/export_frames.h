@@ -26,6 +26,7 @@ struct DisplayOptions {
     double cell_size = 0.0;            ///< largest edge of a triangle [m]
     sample::ShadowMeshOptions shadows; ///< smallest_edge >= cell_size: the same triangles in all frames
     sample::DirectLightOptions direct;
+    sample::IndirectLight indirect = sample::IndirectLight::Solution;
 };
 
 struct Exported {

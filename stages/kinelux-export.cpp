@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     const std::uint64_t& seed = stage.add_seed();
     const auto& range = stage.add_frames("first and last frame that are exported");
     std::optional<double> cell_size, shadow_cell, shadow_tolerance;
+    bool gather = false;
     std::optional<int> probe_rays, shadow_rays;
     stage.options().add({.member = &cell_size,
                          .flags = "--cell-size",
@@ -39,6 +40,9 @@ int main(int argc, char** argv) {
                          .low = 1e-4,
                          .high = 1.0,
                          .unset = "twice the accuracy"});
+    stage.options().add({.member = &gather,
+                         .flags = "--gather",
+                         .help = "indirect light by one more reflection at every point: closer, slower"});
     stage.options().add({.member = &probe_rays,
                          .flags = "--probe-rays",
                          .help = "per point and source; all alike = done",
@@ -62,6 +66,7 @@ int main(int argc, char** argv) {
         display.direct.probe_rays = probe_rays.value_or(display.direct.probe_rays);
         display.direct.shadow_rays = shadow_rays.value_or(display.direct.shadow_rays);
         display.direct.seed = seed;
+        if (gather) display.indirect = sample::IndirectLight::Gathered;
         const auto solution = stage.step("read solution", [&] { return stage.folder().read_solution(); });
         const auto exported = stage.step("frames", [&] {
             return stages::export_frames(light, solution,

@@ -229,8 +229,8 @@ constexpr KeySchema key_table[] = {
      "45",
      "vertical angle of view"},
 
-    {"export", "cell_size", Kind::Number, positive, "", "length", optional_key, "follows from the elements",
-     "largest edge of a displayed cell"},
+    {"export", "cell_size", Kind::Number, positive, "", "length", optional_key, "half an element",
+     "largest edge of a displayed cell; along shadows they are smaller"},
     {"export", "frames", Kind::Integers, not_negative, "", "", optional_key, "all",
      "numbers of the frames written"},
 };

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/sequence.h"
 #include "geometry/facet_surface.h"
+#include "sample/gather.h"
 #include "sample/receivers.h"
 #include "sample/sampler.h"
 
@@ -173,7 +174,7 @@ model::SurfaceFields SurfaceSampler::fields(const model::UnknownLayout& layout,
                                             const model::FrameSolution& frame,
                                             std::span<const geometry::Pose> poses,
                                             const visibility::Occluders& occluders,
-                                            const DirectLightOptions& options) const {
+                                            const DirectLightOptions& options, IndirectLight from) const {
     const std::size_t points = mesh_.points.size(), channels = scene_.channels.size();
     const bool radiometric = scene_.quantity == model::Quantity::Radiometric;
     const std::string unit = radiometric ? "W_m2" : "lx";
@@ -189,12 +190,22 @@ model::SurfaceFields SurfaceSampler::fields(const model::UnknownLayout& layout,
 
     const DirectLight direct_light(moved_sources(elements_, scene_, poses), scene_, frame.time_s, occluders,
                                    options);
+    std::vector<geometry::ElementShape> moved_elements; // that light is gathered from
+    if (from == IndirectLight::Gathered)
+        for (const geometry::ElementShape& element : elements_)
+            moved_elements.push_back(geometry::moved(element, poses[element.object.value]));
+    const Gather gather(moved_elements, scene_, layout, frame, occluders);
     const auto exitances = model::exitances_at(scene_, frame.time_s);
     const auto evaluate = [&](std::size_t p, std::vector<double>& direct, std::vector<double>& bounced) {
         const geometry::Pose& pose = poses[mesh_.point_objects[p]];
         fields.points[p] = pose.point(mesh_.points[p]);
-        direct_light.irradiance(moved(receivers_[p], pose), p, direct);
-        indirect(p, layout, frame.irradiance_indirect, bounced);
+        const Receiver receiver = moved(receivers_[p], pose);
+        direct_light.irradiance(receiver, p, direct);
+        if (from == IndirectLight::Gathered)
+            // Beside an edge, not on it, where what is seen of the face beyond jumps. The error follows the channels.
+            bounced = gather.indirect({receiver.ray_origin.value_or(receiver.position), receiver.normal});
+        else
+            indirect(p, layout, frame.irradiance_indirect, bounced);
         const std::vector<double>& exitance = exitances[materials_[p].value];
         const std::vector<double>& reflectance = scene_.materials[materials_[p].value].reflectance;
         for (std::size_t c = 0; c < channels; ++c) {

@@ -13,7 +13,7 @@
 
 namespace kinelux::sample {
 
-/// Indirect irradiance at points that need not lie on any surface: the sum over all elements of what they reflect
+/// Indirect irradiance at points on surfaces or off them: the sum over all elements of what they reflect
 /// (radiosity less exitance) times kernel and visibility, at their quadrature nodes; elements that are near a point
 /// are cut until each piece is small beside its distance.
 class Gather {

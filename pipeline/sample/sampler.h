@@ -75,6 +75,12 @@ model::DisplayMesh display_mesh(std::span<const geometry::ElementShape> elements
                                 const model::PatchSet& patches, const model::ClusterTree& tree,
                                 double cell_size);
 
+/// Where indirect light at displayed points comes from.
+enum class IndirectLight : std::uint8_t {
+    Solution, ///< the polynomials of the solve
+    Gathered  ///< one more reflection at every point: all elements times kernel and visibility
+};
+
 /// Evaluates the fields of any frame on a display mesh. What does not change with time is computed once: where each
 /// point lies in the elements around it, and where its shadow rays start.
 class SurfaceSampler {
@@ -86,7 +92,8 @@ public:
     /// Radiosity, irradiance (direct + indirect), direct, indirect at points; the error estimate in cells.
     model::SurfaceFields fields(const model::UnknownLayout& layout, const model::FrameSolution& frame,
                                 std::span<const geometry::Pose> poses, const visibility::Occluders& occluders,
-                                const DirectLightOptions& options) const;
+                                const DirectLightOptions& options,
+                                IndirectLight from = IndirectLight::Solution) const;
 
 private:
     /// The share of one element in the value at a point.

@@ -56,8 +56,9 @@ protected:
     void write(const std::filesystem::path& folder) const {
         ViewWriter writer(folder, scene);
         for (std::uint32_t frame = 0; frame < 3; ++frame)
-            writer.write_frame(frame, uniform_fields(mesh, scene, scene.time.time_of_frame(frame),
-                                                     10.0f + static_cast<float>(frame)));
+            writer.write_frame(frame, mesh,
+                               uniform_fields(mesh, scene, scene.time.time_of_frame(frame),
+                                              10.0f + static_cast<float>(frame)));
         EXPECT_FALSE(std::filesystem::exists(folder / "view.pvd"));
         writer.finish();
     }

@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
     add_square(mesh, ObjectId(1), MaterialId(1), 0.5, 1.5, 4);
     io::ViewWriter writer(folder.path(), scene);
     for (std::uint32_t frame = 0; frame < scene.time.frames; ++frame)
-        writer.write_frame(frame, fields(mesh, scene, scene.time.time_of_frame(frame)));
+        writer.write_frame(frame, mesh, fields(mesh, scene, scene.time.time_of_frame(frame)));
     writer.finish();
     return 0;
 }

@@ -77,6 +77,24 @@ TEST(SurfaceFields, constants_are_reproduced) {
     }
 }
 
+TEST(SurfaceFields, gathered_light_between_equal_walls_is_their_radiosity) {
+    // The frame is no solution: its indirect irradiance is 3, but walls of radiosity 1.5 send 1.5 to every point.
+    for (const int degree : {0, 2}) {
+        const Case c(support::box({0, 0, 0}, {1, 2, 0.7}, support::Facing::Inwards),
+                     support::plain_scene(1, 0.5), 3, degree, 0.21);
+        const SurfaceSampler sampler(c.mesh, c.shapes, c.scene, c.occluders.end_offset());
+        const model::UnknownLayout layout = test::layout_of(c.shapes);
+        const auto fields = sampler.fields(layout, test::uniform_frame(c.shapes, c.scene, 0.0, 3.0), c.poses,
+                                           c.occluders, {}, IndirectLight::Gathered);
+        for (std::size_t p = 0; p < c.mesh.points.size(); ++p) {
+            const Vec3& x = c.mesh.points[p];
+            EXPECT_NEAR(named(fields, "Indirect_W_m2").values[p], 1.5, 0.015)
+                << x.x << " " << x.y << " " << x.z;
+            EXPECT_NEAR(named(fields, "Radiosity_W_m2").values[p], 0.75, 0.0075);
+        }
+    }
+}
+
 TEST(SurfaceFields, values_jump_neither_between_elements_nor_between_patches_in_one_plane) {
     // Two squares side by side in one object, elements with different constants.
     const std::vector<model::Patch> patches{support::rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
