@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "cli/stage.h"
@@ -15,23 +17,36 @@ int main(int argc, char** argv) {
          .outputs = {"reference.csv"}});
     const std::uint64_t& seed = stage.add_seed();
     const auto& range = stage.add_frames("first and last exported frame that are judged", "the first");
-    stages::SensorRequest request{.count = 400, .file = {}, .trace = {.paths = 16384}};
+    std::optional<double> noise;
+    std::optional<int> paths;
+    stages::SensorRequest request{.count = 400, .file = {}, .trace = {}};
     stage.options().add({.member = &request.count,
                          .flags = "--points",
                          .help = "sensor points per frame, spread over all faces that do not emit",
                          .low = 1,
                          .high = 1e6});
-    stage.options().add({.member = &request.trace.paths,
+    stage.options().add({.member = &paths,
                          .flags = "--paths",
-                         .help = "per sensor point",
+                         .help = "per sensor point; with --noise the most",
                          .low = 4,
-                         .high = 1e6});
+                         .high = 1e6,
+                         .unset = "16384, with --noise 1000000"});
+    stage.options().add(
+        {.member = &noise,
+         .flags = "--noise",
+         .help = "standard error over irradiance, both as RMS of a frame, at which tracing stops; "
+                 "0.01 is 1 %",
+         .low = 1e-5,
+         .high = 1.0,
+         .unset = "all paths"});
     stage.options().add({.member = &request.file,
                          .flags = "--sensors",
                          .help = "file of sensor points instead, lines x y z nx ny nz in metres",
                          .unset = "none"});
     return stage.run(argc, argv, [&](cli::Stage&) {
         request.trace.seed = seed;
+        request.trace.noise = noise.value_or(0.0);
+        request.trace.paths = static_cast<std::uint32_t>(paths.value_or(noise ? 1'000'000 : 16384));
         const auto scene = stage.step("read", [&] { return stage.folder().read_scene(); });
         std::vector<stages::Judged> judged;
         for (const std::uint32_t frame : stages::frames_to_judge(stage.folder(), scene, range)) {

@@ -25,7 +25,8 @@ namespace {
 using visibility::Occluders;
 
 constexpr std::uint32_t batches = 16; ///< independent scrambles per point; their spread is the standard error
-constexpr std::uint32_t first_round = 4; ///< paths per batch before the error is looked at
+constexpr std::uint32_t first_paths = 64;             ///< of a point before noise is looked at
+constexpr double fewest_more = 1.5, most_more = 16.0; ///< times the paths of a round in the next
 
 enum Stream : std::uint64_t { LightStream, BounceStream, RouletteStream, StreamCount };
 
@@ -105,7 +106,7 @@ public:
         occluders_.set_poses(geometry::object_poses(scene, time_s));
     }
 
-    SensorReading read(const SensorPoint& point, std::uint64_t seed, const ReferenceOptions& options) const;
+    SensorReading read(const SensorPoint& point, std::uint64_t seed, std::uint32_t paths) const;
 
 private:
     struct Path {
@@ -186,34 +187,27 @@ SensorReading reading_of(const std::vector<std::vector<double>>& sums, std::uint
     return reading;
 }
 
-bool good_enough(const SensorReading& reading, double target) {
-    for (std::size_t c = 0; c < reading.irradiance.size(); ++c)
-        if (!(reading.irradiance[c] > 0.0) || reading.standard_error[c] > target * reading.irradiance[c])
-            return false;
-    return true;
-}
-
-SensorReading Tracer::read(const SensorPoint& point, std::uint64_t seed,
-                           const ReferenceOptions& options) const {
+SensorReading Tracer::read(const SensorPoint& point, std::uint64_t seed, std::uint32_t paths) const {
     const std::size_t channels = scene_.channels.size();
-    const std::uint32_t used_batches = std::clamp(options.paths, 2u, batches);
-    const std::uint32_t all = std::max(1u, (options.paths + used_batches - 1) / used_batches);
+    const std::uint32_t used_batches = std::clamp(paths, 2u, batches);
+    const std::uint32_t all = std::max(1u, (paths + used_batches - 1) / used_batches);
     std::vector<std::vector<double>> sums(used_batches, std::vector<double>(channels, 0.0));
     if (lights_.empty()) return reading_of(sums, all);
-    std::uint32_t done = 0;
-    for (std::uint32_t goal = options.target_error > 0.0 ? std::min(first_round, all) : all;;
-         goal = std::min(2 * goal, all)) {
-        for (std::uint32_t batch = 0; batch < used_batches; ++batch) {
-            Path path{0, core::mix(seed, batch), std::vector<double>(channels, 1.0), sums[batch]};
-            for (path.index = done; path.index < goal; ++path.index) {
-                std::fill(path.throughput.begin(), path.throughput.end(), 1.0);
-                trace({point.position, point.normal}, path);
-            }
+    for (std::uint32_t batch = 0; batch < used_batches; ++batch) {
+        Path path{0, core::mix(seed, batch), std::vector<double>(channels, 1.0), sums[batch]};
+        for (path.index = 0; path.index < all; ++path.index) {
+            std::fill(path.throughput.begin(), path.throughput.end(), 1.0);
+            trace({point.position, point.normal}, path);
         }
-        done = goal;
-        SensorReading reading = reading_of(sums, done);
-        if (done == all || good_enough(reading, options.target_error)) return reading;
     }
+    return reading_of(sums, all);
+}
+
+// The paths that the noise of a round says are needed (it falls at least with their root), and a little more.
+std::uint32_t next_paths(std::uint32_t paths, double noise, const ReferenceOptions& options) {
+    const double ratio = 1.1 * (noise / options.noise) * (noise / options.noise);
+    return static_cast<std::uint32_t>(std::min(static_cast<double>(options.paths),
+                                               std::ceil(paths * std::clamp(ratio, fewest_more, most_more))));
 }
 
 } // namespace
@@ -223,12 +217,28 @@ std::vector<SensorReading> trace_irradiance(const model::Scene& scene, double ti
                                             const ReferenceOptions& options) {
     const Tracer tracer(scene, time_s);
     std::vector<SensorReading> readings(points.size());
-    core::Progress progress("tracing the reference", points.size());
-    core::parallel_for(points.size(), [&](std::size_t i) {
-        readings[i] = tracer.read(points[i], core::mix(options.seed, i), options);
-        progress.advance();
-    });
-    return readings;
+    std::uint64_t seed = options.seed;
+    std::uint32_t paths = options.noise > 0.0 ? std::min(first_paths, options.paths) : options.paths;
+    for (;; seed = core::mix(seed, paths)) {
+        core::Progress progress("tracing the reference", points.size());
+        core::parallel_for(points.size(), [&](std::size_t i) {
+            readings[i] = tracer.read(points[i], core::mix(seed, i), paths);
+            progress.advance();
+        });
+        const double noise = options.noise > 0.0 ? noise_of(readings) : 0.0;
+        if (paths == options.paths || noise <= options.noise) return readings;
+        paths = next_paths(paths, noise, options);
+    }
+}
+
+double noise_of(std::span<const SensorReading> readings) {
+    double noise = 0.0, all = 0.0;
+    for (const SensorReading& reading : readings)
+        for (std::size_t c = 0; c < reading.irradiance.size(); ++c) {
+            noise += reading.standard_error[c] * reading.standard_error[c];
+            all += reading.irradiance[c] * reading.irradiance[c];
+        }
+    return all > 0.0 ? std::sqrt(noise / all) : 0.0;
 }
 
 } // namespace kinelux::reference

@@ -15,8 +15,8 @@ namespace kinelux::reference {
 struct ReferenceOptions {
     std::uint32_t paths = 1024; ///< per point, 4..1e6
     std::uint64_t seed = 1;
-    double target_error = 0.0; ///< stop a point at this relative standard error [1]; 0: always all paths.
-                               ///< Stopping by the sample's own error biases it slightly: judge with 0
+    double noise =
+        0.0; ///< RMS standard error / RMS of the readings to stop at [1]; paths are then the most. 0: all
 };
 
 /// A point of the scene's own triangles in world position at the time asked for.
@@ -42,10 +42,14 @@ std::vector<SensorPoint> sensor_points(const model::Scene& scene, double time_s,
 
 /// Unbiased irradiance by path tracing on the scene's own triangles: next-event estimation to the area sources at each
 /// vertex, cosine-distributed bounces, Russian roulette by reflectance. Independent of patches, bases and blocks.
-/// Same bytes at any thread count.
+/// With a noise to stop at, all points are traced anew with more paths until it is reached: how many are taken depends
+/// on earlier readings, and these are dropped, so that the mean stays unbiased. Same bytes at any thread count.
 std::vector<SensorReading> trace_irradiance(const model::Scene& scene, double time_s,
                                             std::span<const SensorPoint> points,
                                             const ReferenceOptions& options);
+
+/// RMS standard error / RMS of readings [1]; 0 where all is dark.
+double noise_of(std::span<const SensorReading> readings);
 
 /// How far values at the sensor points are from the reference.
 struct Comparison {

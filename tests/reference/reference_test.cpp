@@ -154,9 +154,9 @@ TEST(Reference, the_bytes_do_not_depend_on_the_number_of_threads) {
     const model::Scene scene = lamp_over_floor(0.5);
     const std::vector<SensorPoint> points = floor_points(100, 3);
     core::set_thread_count(1);
-    const auto one = trace_irradiance(scene, 0.0, points, {.paths = 64, .target_error = 0.02});
+    const auto one = trace_irradiance(scene, 0.0, points, {.paths = 1024, .noise = 0.005});
     core::set_thread_count(2);
-    const auto two = trace_irradiance(scene, 0.0, points, {.paths = 64, .target_error = 0.02});
+    const auto two = trace_irradiance(scene, 0.0, points, {.paths = 1024, .noise = 0.005});
     core::set_thread_count(0);
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_EQ(one[i].irradiance, two[i].irradiance);
@@ -164,11 +164,24 @@ TEST(Reference, the_bytes_do_not_depend_on_the_number_of_threads) {
     }
 }
 
-TEST(Reference, a_target_error_is_reached_with_fewer_paths) {
-    const auto readings = trace_irradiance(lamp_over_floor(), 0.0, floor_points(50, 4),
-                                           {.paths = 100000, .target_error = 0.02});
-    for (const SensorReading& reading : readings)
-        EXPECT_LE(reading.standard_error[0], 0.02 * reading.irradiance[0]);
+TEST(Reference, a_noise_asked_for_is_reached_without_bias) {
+    const auto points = floor_points(50, 4);
+    const auto truth = trace_irradiance(lamp_over_floor(), 0.0, points, {.paths = 65536, .seed = 7});
+    for (const double noise : {0.02, 0.002}) {
+        const auto readings =
+            trace_irradiance(lamp_over_floor(), 0.0, points, {.paths = 1'000'000, .noise = noise});
+        EXPECT_LE(noise_of(readings), noise);
+        EXPECT_GT(noise_of(readings), 0.01 * noise);
+        double difference = 0.0, sum = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            difference += readings[i].irradiance[0] - truth[i].irradiance[0];
+            sum += truth[i].irradiance[0];
+        }
+        EXPECT_LT(std::abs(difference), 0.5 * noise * sum);
+    }
+    const auto few = trace_irradiance(lamp_over_floor(), 0.0, points, {.paths = 64, .noise = 1e-9});
+    const auto all = trace_irradiance(lamp_over_floor(), 0.0, points, {.paths = 64});
+    EXPECT_EQ(few[0].irradiance, all[0].irradiance); // paths are the most
 }
 
 TEST(Reference, a_scene_without_light_is_dark) {
