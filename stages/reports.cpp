@@ -180,6 +180,10 @@ core::ExitCode report_comparison(const reference::Comparison& comparison, double
     if (comparison.unmatched > 0)
         core::log_warning(fmt::format("{} sensor points lie on nothing that was exported; they count nowhere",
                                       comparison.unmatched));
+    if (comparison.reference_noise > target)
+        core::log_warning(fmt::format("the reference's own noise is above the {:.2g} % asked for, so this "
+                                      "proves little: more --paths, or --noise {:.2g}",
+                                      100.0 * target, 0.3 * target));
     const double squared = comparison.relative_rms * comparison.relative_rms -
                            comparison.reference_noise * comparison.reference_noise;
     if (squared <= target * target) return core::ExitCode::Ok;
