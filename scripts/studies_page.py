@@ -11,7 +11,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "stages/study"))
+sys.path[:0] = [str(ROOT / "stages/study"), str(ROOT / "stages/pages")]
 
 import page
 

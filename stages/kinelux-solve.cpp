@@ -95,10 +95,11 @@ int main(int argc, char** argv) {
         stages::SolveSaver saver(stage, options.save_every_s);
         solve::Checkpoint checkpoint = saver.checkpoint();
         progress.advance(checkpoint.from.solution.frames.size());
+        const solve::SolveOptions solving = options.for_target(light.scene.accuracy.target);
+        stage.record().set("tolerance", solving.tolerance);
         const model::Solution solution = stage.step("solve", [&] {
-            return solve::solve_animation(
-                {light.scene, light.plan, blocks, light.tree.elements, areas}, *engine.engine, frames,
-                options.for_target(light.scene.accuracy.target), show, std::move(checkpoint));
+            return solve::solve_animation({light.scene, light.plan, blocks, light.tree.elements, areas},
+                                          *engine.engine, frames, solving, show, std::move(checkpoint));
         });
         stage.step("write", [&] { stage.folder().write_solution(solution); });
         stages::report_engine(engine, stage);

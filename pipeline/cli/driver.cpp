@@ -194,7 +194,8 @@ int drive(const std::vector<std::string>& arguments, std::span<const Command> co
         described.emplace_back(stage.name, fmt::format("kinelux-{}: {}", stage.name, stage.summary));
     for (const auto& [name, summary] :
          {std::pair("reference", "measures the exported irradiance against path tracing"),
-          std::pair("study", "what accuracy costs on a scene, with measured errors")})
+          std::pair("study", "what accuracy costs on a scene, with measured errors"),
+          std::pair("report", "one page of a case: pictures, plan, errors, times, meters, warnings")})
         described.emplace_back(name, fmt::format("kinelux-{}: {}", name, summary));
     std::vector<std::string> known;
     TextTable table({"", ""});

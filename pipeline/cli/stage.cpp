@@ -108,6 +108,8 @@ int Stage::work_on(const std::function<core::ExitCode(Stage&)>& work) {
     if (unchanged_) return std::atoi(record_value(record_file(), "exit_code").value_or("0").c_str());
 
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    record_.set_json("warnings", "[]");
+    for (const std::string& warning : core::warnings()) record_.append("warnings", warning);
     record_.set("seconds", seconds);
     record_.set("peak_memory_mib", core::peak_memory_mib());
     record_.set("exit_code", static_cast<int>(code));

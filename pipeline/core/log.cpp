@@ -21,6 +21,7 @@ struct Log {
     std::mutex mutex;
     Verbosity verbosity = Verbosity::Normal;
     std::ofstream file;
+    std::vector<std::string> warnings;
 };
 
 Log& the_log() {
@@ -49,7 +50,18 @@ void configure_log(Verbosity verbosity, const std::filesystem::path& log_file) {
 
 void log_info(std::string_view line) { write_line(line, the_log().verbosity != Verbosity::Quiet); }
 void log_detail(std::string_view line) { write_line(line, the_log().verbosity == Verbosity::Verbose); }
-void log_warning(std::string_view line) { write_line(fmt::format("warning: {}", line), true); }
+void log_warning(std::string_view line) {
+    write_line(fmt::format("warning: {}", line), true);
+    Log& log = the_log();
+    const std::scoped_lock lock(log.mutex);
+    log.warnings.emplace_back(line);
+}
+
+std::vector<std::string> warnings() {
+    Log& log = the_log();
+    const std::scoped_lock lock(log.mutex);
+    return log.warnings;
+}
 
 struct Progress::State {
     State(std::string shown_title, std::size_t steps) : title(std::move(shown_title)), total(steps) {}

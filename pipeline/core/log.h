@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kinelux::core {
 
@@ -16,6 +17,7 @@ void configure_log(Verbosity verbosity, const std::filesystem::path& log_file);
 void log_info(std::string_view line);    ///< to stderr unless quiet
 void log_detail(std::string_view line);  ///< to stderr when verbose
 void log_warning(std::string_view line); ///< "warning: ..." to stderr, always
+std::vector<std::string> warnings();     ///< all that log_warning was given so far, in order
 
 /// Progress of one step: a bar with the time left on a terminal, a plain line every 10 % (and at least 2 s apart) when
 /// piped, nothing when quiet. advance() may be called from any thread.

@@ -41,7 +41,9 @@ void RunRecord::add_input(const std::filesystem::path& file) {
     data_->root["inputs"].push_back({{"file", file.string()}, {"hash", file_hash(file)}});
 }
 
-std::string RunRecord::to_json() const { return data_->root.dump(2) + "\n"; }
+std::string RunRecord::to_json() const {
+    return data_->root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 void RunRecord::write(const std::filesystem::path& file) const { write_whole_file(file, to_json()); }
 

@@ -20,4 +20,4 @@ _kinelux() {
     fi
 }
 complete -o default -F _kinelux kinelux kinelux-clean kinelux-fit kinelux-cluster kinelux-plan kinelux-coefficients \
-    kinelux-solve kinelux-export kinelux-reference kinelux-study
+    kinelux-solve kinelux-export kinelux-reference kinelux-study kinelux-report

@@ -1,18 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The table of a study for the terminal, for Markdown and as one page of HTML that needs no other file."""
 
-import base64
-import html
-
-STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 0 auto; padding: 1rem; color: #222; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
-img { max-width: 100%; height: auto; }
-.table { overflow-x: auto; } table { border-collapse: collapse; font-size: 0.9rem; white-space: nowrap; }
-th, td { padding: 0.25rem 0.6rem; text-align: right; border-bottom: 1px solid #ddd; } th { font-weight: 600; }
-td.bad { color: #b00020; font-weight: 600; }
-.advice { border-left: 4px solid #4477aa; padding: 0.5rem 1rem; background: #f2f6fa; }
-"""
+import document
+from document import escape
 
 
 def percent(value):
@@ -73,25 +63,14 @@ def notes(study):
 def write(study, pictures, folder):
     """study.html"""
     columns, cells = table(study)
-    body = [f"<h1>What accuracy costs: {html.escape(study['title'])}</h1>",
-            f"<p class=\"advice\">{html.escape(study['advice'])}</p>", "<div class=\"table\"><table><thead><tr>"]
-    body += [f"<th>{html.escape(column)}</th>" for column in columns]
-    body.append("</tr></thead><tbody>")
-    for line in cells:
-        body.append("<tr>" + "".join(cell(word) for word in line) + "</tr>")
-    body.append("</tbody></table></div>")
-    body += [f"<p>{html.escape(line)}</p>" for line in notes(study)]
+    body = [f"<h1>What accuracy costs: {escape(study['title'])}</h1>", f"<p class=\"advice\">{escape(study['advice'])}</p>",
+            document.table(columns, [[cell(word) for word in line] for line in cells])]
+    body += [f"<p>{escape(line)}</p>" for line in notes(study)]
     for title, name in pictures.items():
-        data = base64.b64encode((folder / name).read_bytes()).decode("ascii")
-        body.append(f"<h2>{html.escape(title)}</h2><img alt=\"{html.escape(title)}\" src=\"data:image/png;base64,{data}\"/>")
-    body.append(f"<p>{html.escape(study['program'])}, {html.escape(study['scene'])}</p>")
-    (folder / "study.html").write_text(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
-        f"<title>{html.escape(study['title'])}: what accuracy costs</title><style>{STYLE}</style></head>\n<body>"
-        + "\n".join(body) + "</body></html>\n", encoding="utf-8")
+        body += [f"<h2>{escape(title)}</h2>", document.image((folder / name).read_bytes(), title)]
+    body.append(f"<p>{escape(study['program'])}, {escape(study['scene'])}</p>")
+    document.write(folder / "study.html", document.document(f"{study['title']}: what accuracy costs", body))
 
 
 def cell(word):
-    mark = ' class="bad"' if word == "no" else ""
-    return f"<td{mark}>{html.escape(word)}</td>"
+    return document.cell(escape(word), *(["bad"] if word == "no" else []))

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The plots of a study, as PNG files. None are drawn without python3-matplotlib."""
 
-import os
-import shutil
-import subprocess
 import sys
+
+import picture
 
 STAGE_COLOURS = {"clean": "#bbbbbb", "fit": "#999999", "cluster": "#66aa77", "plan": "#ccbb44", "coefficients": "#4477aa",
                  "solve": "#ee6677", "export": "#aa3377"}
@@ -110,17 +109,10 @@ def picture_of_scene(study, folder):
     finest = study["rows"][-1]
     name = f"{finest['engine']}-degree-{finest['degree']}-{100 * finest['accuracy']:g}"
     case = folder / "cases" / f"{name}.case"
-    program = os.environ.get("KINELUX_PVBATCH") or shutil.which("pvbatch")
-    if not program:
-        print("kinelux-study: warning: no picture of the scene, there is no pvbatch", file=sys.stderr)
-        return None
-    frame = study["reference"]["frames"][len(study["reference"]["frames"]) // 2]
-    command = [program, str(case / "view.py"), "--png", str(folder / "scene.png"), "--frame", str(frame), "--size", "960x720"]
-    if "DISPLAY" not in os.environ and shutil.which("xvfb-run"):
-        command = ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24 -nolisten tcp"] + command
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode == 0 and (folder / "scene.png").exists():
+    frames = study["reference"]["frames"]
+    shown = frames[len(frames) // 2] - frames[0]  # view.py counts from the first one exported
+    reason = picture.draw(case, folder / "scene.png", shown, "960x720")
+    if reason is None:
         return "scene.png"
-    print("kinelux-study: warning: no picture of the scene, pvbatch failed: "
-          + (done.stderr.strip().splitlines() or ["no message"])[-1], file=sys.stderr)
+    print(f"kinelux-study: warning: no picture of the scene, {reason}", file=sys.stderr)
     return None

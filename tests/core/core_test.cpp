@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "core/run_record.h"
 #include "core/sequence.h"
@@ -68,6 +69,23 @@ TEST(RunRecord, nests_keys_and_measures_steps) {
     EXPECT_NE(json.find("\"patches\": 7"), std::string::npos);
     EXPECT_NE(json.find("\"peak_memory_mib\""), std::string::npos);
     EXPECT_NE(json.find("\"version\""), std::string::npos);
+}
+
+TEST(RunRecord, writes_bytes_that_are_no_text_as_replacement_characters) {
+    RunRecord record("test");
+    record.append("warnings", "room\xff.obj: empty");
+    EXPECT_NE(record.to_json().find("room\xef\xbf\xbd.obj: empty"), std::string::npos);
+}
+
+TEST(Log, keeps_warnings_in_order) {
+    const std::size_t before = warnings().size();
+    log_warning("one");
+    log_info("no warning");
+    log_warning("another");
+    const std::vector<std::string> all = warnings();
+    ASSERT_EQ(all.size(), before + 2);
+    EXPECT_EQ(all[before], "one");
+    EXPECT_EQ(all[before + 1], "another");
 }
 
 TEST(ParallelFor, visits_every_index_once_and_hands_on_exceptions) {

@@ -36,10 +36,12 @@ class Installed(unittest.TestCase):
         run(self.prefix / "bin/kinelux", "fit", case)
         self.assertTrue((case / "patches.h5").exists())
         self.assertIn("usage: kinelux-study", run(self.prefix / "bin/kinelux", "study", "--help"))
+        run(self.prefix / "bin/kinelux", "report", case, "--no-pictures")
+        self.assertIn("There is no plan yet", (case / "report.html").read_text(encoding="utf-8"))
 
     def test_every_program_has_a_manual_page_that_man_accepts(self):
         for program in (self.prefix / "bin").glob("kinelux*"):
-            if program.name == "kinelux-study":  # Python, with --help of its own
+            if program.name in ("kinelux-study", "kinelux-report"):  # Python, with --help of their own
                 continue
             page = self.prefix / "share/man/man1" / f"{program.name}.1"
             shown = subprocess.run(["man", "--warnings", "-l", page], capture_output=True, text=True, check=True,
