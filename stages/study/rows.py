@@ -14,7 +14,7 @@ import tomllib
 ENGINES = ("auto", "exact", "online", "offline", "paper")
 DEGREES = ("auto", "0", "1", "2", "3")
 STAGES = ("clean", "fit", "cluster", "plan", "coefficients", "solve", "export")
-PROGRAMS = pathlib.Path(__file__).resolve().parent.parent
+PROGRAMS = pathlib.Path(sys.argv[0]).resolve().parent  # kinelux-study lies beside the others
 FIRST_PATHS = 512             # per point, to find how noisy the scene is
 MOST_PATHS = 1_000_000        # what kinelux-reference takes
 NOISE_SHARE = 0.3             # of the finest accuracy: noise that would not disturb

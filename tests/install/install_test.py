@@ -36,6 +36,9 @@ class Installed(unittest.TestCase):
         run(self.prefix / "bin/kinelux", "fit", case)
         self.assertTrue((case / "patches.h5").exists())
         self.assertIn("usage: kinelux-study", run(self.prefix / "bin/kinelux", "study", "--help"))
+        scene = ROOT / "data/scenes/cornell/cornell-static.toml"
+        run(self.prefix / "bin/kinelux", "study", scene, "-o", case.parent / "study", "--accuracies", "30", "--points",
+            "10", "--reference-time", "1")
         run(self.prefix / "bin/kinelux", "report", case, "--no-pictures")
         self.assertIn("There is no plan yet", (case / "report.html").read_text(encoding="utf-8"))
 
