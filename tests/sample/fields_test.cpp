@@ -8,29 +8,14 @@
 #include "kernel/polygon_irradiance.h"
 #include "sample/frames.h"
 #include "sample/sampler.h"
+#include "sample/shown_patches.h"
 #include "support/shapes.h"
 
 namespace kinelux::sample {
 namespace {
 
-/// Elements, display mesh and occluders of some patches.
-struct Case {
-    model::PatchSet set;
-    model::Scene scene;
-    model::ClusterTree tree;
-    std::vector<geometry::ElementShape> shapes;
-    model::DisplayMesh mesh;
-    visibility::Occluders occluders;
-    std::vector<geometry::Pose> poses;
-
-    Case(std::vector<model::Patch> patches, model::Scene with, int n, int degree, double cell)
-        : set{std::move(patches), {}},
-          scene(std::move(with)),
-          tree(support::uniform_elements(set, n)),
-          shapes(geometry::element_shapes(set, tree, degree, 0)),
-          mesh(display_mesh(shapes, set, tree, cell)),
-          occluders(support::occluders_of(set, scene)),
-          poses(scene.objects.size()) {}
+struct Case : test::ShownPatches {
+    using ShownPatches::ShownPatches;
 
     model::SurfaceFields fields(const model::FrameSolution& frame) const {
         return surface_fields(mesh, shapes, scene, test::layout_of(shapes), frame, poses, occluders, {});

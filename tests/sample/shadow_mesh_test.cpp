@@ -10,6 +10,7 @@
 #include "sample/mesh_checks.h"
 #include "sample/sampler.h"
 #include "sample/shadow_mesh.h"
+#include "sample/shown_patches.h"
 #include "support/shapes.h"
 
 namespace kinelux::sample {
@@ -20,39 +21,25 @@ constexpr std::array<Vec3, 4> lamp{Vec3(-0.1, -0.1, 2.0), Vec3(-0.1, 0.1, 2.0), 
                                    Vec3(0.1, -0.1, 2.0)};
 
 /// A square ground below a lamp of 0.2 m, 2 m above it; with a screen across x > 0 half way, or without.
-struct Ground {
-    model::Scene scene;
-    model::PatchSet set;
-    model::ClusterTree tree;
-    std::vector<geometry::ElementShape> shapes;
-    model::DisplayMesh rest;
-    visibility::Occluders occluders;
-    std::vector<geometry::Pose> poses;
-
+struct Ground : test::ShownPatches {
     explicit Ground(bool screen,
                     const model::Patch& ground = support::rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}))
-        : scene(lit_scene()),
-          set(patches(screen, ground)),
-          tree(support::uniform_elements(set, 2)),
-          shapes(geometry::element_shapes(set, tree, 0, 0)),
-          rest(display_mesh(shapes, set, tree, cell)),
-          occluders(support::occluders_of(set, scene)),
-          poses(scene.objects.size()) {}
+        : ShownPatches(patches(screen, ground), lit_scene(), 2, 0, cell) {}
 
     static model::Scene lit_scene() {
         model::Scene scene = support::plain_scene(3);
         scene.materials.push_back({"lamp", {0.0}, {5.0}, model::Sides::Front});
         return scene;
     }
-    static model::PatchSet patches(bool screen, const model::Patch& ground) {
-        model::PatchSet set{{ground, support::rectangle(lamp[0], lamp[1] - lamp[0], lamp[3] - lamp[0],
-                                                        ObjectId(1), MaterialId(1))},
-                            {}};
-        if (screen) set.patches.push_back(support::rectangle({0, -2, 1}, {2, 0, 0}, {0, 4, 0}, ObjectId(2)));
-        return set;
+    static std::vector<model::Patch> patches(bool screen, const model::Patch& ground) {
+        std::vector<model::Patch> result{
+            ground,
+            support::rectangle(lamp[0], lamp[1] - lamp[0], lamp[3] - lamp[0], ObjectId(1), MaterialId(1))};
+        if (screen) result.push_back(support::rectangle({0, -2, 1}, {2, 0, 0}, {0, 4, 0}, ObjectId(2)));
+        return result;
     }
     ShadowMesh shadows(double smallest_edge, double tolerance = 0.03) const {
-        return shadow_mesh(rest, set, shapes, scene, 0.0, poses, occluders, direct,
+        return shadow_mesh(mesh, set, shapes, scene, 0.0, poses, occluders, direct,
                            {.tolerance = tolerance, .smallest_edge = smallest_edge});
     }
 
@@ -88,7 +75,7 @@ TEST(ShadowMesh, interpolation_follows_a_penumbra_closely) {
     const double bright = truth({-0.5, 0, 0});
     const auto fine = ground.shadows(0.01);
     EXPECT_LT(interpolation_error(fine.mesh), 0.03 * bright);
-    EXPECT_LT(interpolation_error(fine.mesh), 0.2 * interpolation_error(ground.rest));
+    EXPECT_LT(interpolation_error(fine.mesh), 0.2 * interpolation_error(ground.mesh));
     EXPECT_LT(fine.unresolved_area, 0.01);
     // The penumbra is 0.2 m wide: cells are small there and as they were elsewhere.
     std::size_t inside = 0, outside = 0, outside_at_rest = 0;
@@ -96,7 +83,7 @@ TEST(ShadowMesh, interpolation_follows_a_penumbra_closely) {
     for (std::size_t p = 0; p < fine.mesh.points.size(); ++p) {
         if (fine.mesh.point_objects[p] != 0) continue;
         (is_inside(fine.mesh.points[p]) ? inside : outside) += 1;
-        if (p < ground.rest.points.size() && !is_inside(ground.rest.points[p])) ++outside_at_rest;
+        if (p < ground.mesh.points.size() && !is_inside(ground.mesh.points[p])) ++outside_at_rest;
     }
     EXPECT_GT(inside, 5 * outside_at_rest);
     EXPECT_LT(outside, 2 * outside_at_rest);
@@ -105,17 +92,17 @@ TEST(ShadowMesh, interpolation_follows_a_penumbra_closely) {
 TEST(ShadowMesh, cells_that_may_not_be_cut_are_counted_where_shadows_are_sharper) {
     const Ground ground(true);
     const auto as_it_was = ground.shadows(10.0);
-    EXPECT_EQ(as_it_was.mesh.triangles, ground.rest.triangles);
-    EXPECT_EQ(as_it_was.mesh.points, ground.rest.points);
+    EXPECT_EQ(as_it_was.mesh.triangles, ground.mesh.triangles);
+    EXPECT_EQ(as_it_was.mesh.points, ground.mesh.points);
     EXPECT_GT(as_it_was.unresolved_area, 0.3); // 0.2 m of 2 m and a cell on each side
     EXPECT_LT(as_it_was.unresolved_area, 2.0);
 }
 
 TEST(ShadowMesh, light_that_is_linear_in_every_cell_cuts_none) {
     const Ground ground(false);
-    EXPECT_EQ(ground.shadows(0.01, 0.5).mesh.triangles, ground.rest.triangles);
+    EXPECT_EQ(ground.shadows(0.01, 0.5).mesh.triangles, ground.mesh.triangles);
     // Without shadow the middle below the lamp is brighter than between corners: gradients count more strictly.
-    EXPECT_GT(ground.shadows(0.01, 0.003).mesh.triangles.size(), ground.rest.triangles.size());
+    EXPECT_GT(ground.shadows(0.01, 0.003).mesh.triangles.size(), ground.mesh.triangles.size());
 }
 
 TEST(ShadowMesh, cut_triangles_fit_together_and_points_keep_their_numbers) {
@@ -124,8 +111,8 @@ TEST(ShadowMesh, cut_triangles_fit_together_and_points_keep_their_numbers) {
     test::expect_consistent(mesh);
     EXPECT_EQ(mesh.parameters.size(), mesh.points.size());
     EXPECT_EQ(test::t_junctions(mesh), 0u);
-    for (std::size_t p = 0; p < ground.rest.points.size(); ++p)
-        EXPECT_EQ(mesh.points[p], ground.rest.points[p]);
+    for (std::size_t p = 0; p < ground.mesh.points.size(); ++p)
+        EXPECT_EQ(mesh.points[p], ground.mesh.points[p]);
     double area = 0.0, before = 0.0, thinnest = 1.0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         area += test::area_of(mesh, t);
@@ -135,7 +122,7 @@ TEST(ShadowMesh, cut_triangles_fit_together_and_points_keep_their_numbers) {
                                                       mesh.points[mesh.triangles[t][(e + 1) % 3]]));
         thinnest = std::min(thinnest, 4.0 * test::area_of(mesh, t) / (longest * longest));
     }
-    for (std::size_t t = 0; t < ground.rest.triangles.size(); ++t) before += test::area_of(ground.rest, t);
+    for (std::size_t t = 0; t < ground.mesh.triangles.size(); ++t) before += test::area_of(ground.mesh, t);
     EXPECT_NEAR(area, before, 1e-12);
     EXPECT_GT(thinnest, 0.2); // right-angled ones with equal legs have 1
 }
@@ -149,7 +136,7 @@ TEST(ShadowMesh, new_points_of_a_round_patch_lie_on_it) {
     tube.triangles = {{0, 1, 2}, {0, 2, 3}};
     const Ground ground(true, tube);
     const model::DisplayMesh mesh = ground.shadows(0.02).mesh;
-    ASSERT_GT(mesh.points.size(), ground.rest.points.size());
+    ASSERT_GT(mesh.points.size(), ground.mesh.points.size());
     for (std::size_t p = 0; p < mesh.points.size(); ++p)
         if (mesh.point_objects[p] == 0) {
             const Vec3 x = mesh.points[p];
